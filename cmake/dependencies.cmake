@@ -1,0 +1,18 @@
+# Everything here is a Debian 12 package; tools/packages.txt is the list that tools/test and tools/demo install.
+find_package(Eigen3 3.4 REQUIRED NO_MODULE)
+list(APPEND CMAKE_MODULE_PATH /usr/share/cmake/geographiclib)
+find_package(GeographicLib REQUIRED)
+find_package(fmt REQUIRED)
+find_package(spdlog REQUIRED)
+find_package(yaml-cpp REQUIRED)
+find_package(nlohmann_json REQUIRED)
+find_package(CLI11 REQUIRED)
+find_package(FastFloat REQUIRED)
+find_package(TBB REQUIRED)
+find_package(ZLIB REQUIRED)
+find_package(Threads REQUIRED)
+
+# FindGeographicLib gives variables; one imported target keeps its headers out of our warnings.
+add_library(coast_geographiclib INTERFACE)
+target_include_directories(coast_geographiclib SYSTEM INTERFACE ${GeographicLib_INCLUDE_DIRS})
+target_link_libraries(coast_geographiclib INTERFACE ${GeographicLib_LIBRARIES})

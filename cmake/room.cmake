@@ -1,0 +1,55 @@
+# coast_room(<room> SOURCES <files> [DEPS <targets>]): one static library per room, coast_<room>, alias coast::<room>.
+# A wrong include does not link: a room sees only what DEPS names.
+
+add_library(coast_options INTERFACE)
+target_include_directories(coast_options INTERFACE ${PROJECT_SOURCE_DIR}/include)
+target_compile_options(coast_options INTERFACE -Wall -Wextra -Wpedantic -Wconversion -Wshadow -Werror)
+# Numbers must not depend on the compiler's mood: no contraction to fused multiply-add.
+target_compile_options(coast_options INTERFACE -ffp-contract=off)
+if(COAST_SANITIZE)
+  target_compile_options(coast_options INTERFACE -fsanitize=address,undefined -fno-sanitize-recover=all -fno-omit-frame-pointer)
+  target_link_options(coast_options INTERFACE -fsanitize=address,undefined)
+endif()
+if(COAST_FUZZ)
+  target_compile_options(coast_options INTERFACE -fsanitize=fuzzer-no-link)
+endif()
+
+# Eigen dominates compile time: parsed once, reused by every room that asks for it.
+file(WRITE ${CMAKE_BINARY_DIR}/pch_anchor.cpp "")
+add_library(coast_pch OBJECT ${CMAKE_BINARY_DIR}/pch_anchor.cpp)
+target_link_libraries(coast_pch PUBLIC coast_options Eigen3::Eigen fmt::fmt)
+target_precompile_headers(coast_pch PRIVATE <Eigen/Core> <Eigen/Geometry> <fmt/format.h> <algorithm> <array> <cmath>
+                          <cstdint> <functional> <map> <memory> <optional> <span> <string> <string_view> <vector>)
+
+function(coast_room room)
+  cmake_parse_arguments(ROOM "" "" "SOURCES;DEPS" ${ARGN})
+  add_library(coast_${room} STATIC ${ROOM_SOURCES})
+  add_library(coast::${room} ALIAS coast_${room})
+  target_link_libraries(coast_${room} PUBLIC coast_options Eigen3::Eigen fmt::fmt ${ROOM_DEPS})
+  target_include_directories(coast_${room} PRIVATE ${CMAKE_CURRENT_SOURCE_DIR})
+  target_precompile_headers(coast_${room} REUSE_FROM coast_pch)
+endfunction()
+
+# coast_room_tests(<room> SOURCES <files> [DEPS <targets>]): one test program per room, coast_<room>_tests, under CTest.
+function(coast_room_tests room)
+  cmake_parse_arguments(TESTS "" "" "SOURCES;DEPS" ${ARGN})
+  add_executable(coast_${room}_tests ${TESTS_SOURCES})
+  target_link_libraries(coast_${room}_tests PRIVATE coast::${room} coast_test_support ${TESTS_DEPS})
+  target_include_directories(coast_${room}_tests PRIVATE ${PROJECT_SOURCE_DIR}/tests)
+  target_compile_definitions(coast_${room}_tests PRIVATE COAST_SOURCE_DIR="${PROJECT_SOURCE_DIR}")
+  target_precompile_headers(coast_${room}_tests REUSE_FROM coast_test_pch)
+  # Names by index or by the printer a suite gives: printed bytes of a parameter change from run to run.
+  gtest_discover_tests(coast_${room}_tests NO_PRETTY_VALUES DISCOVERY_MODE PRE_TEST PROPERTIES LABELS ${room})
+endfunction()
+
+# coast_fuzzer(<name> SOURCES <files> [DEPS <targets>]): one libFuzzer program, coast_fuzz_<name>; its corpus is
+# tests/fuzz/corpus/<name>/. Nothing without COAST_FUZZ.
+function(coast_fuzzer name)
+  if(NOT COAST_FUZZ)
+    return()
+  endif()
+  cmake_parse_arguments(FUZZ "" "" "SOURCES;DEPS" ${ARGN})
+  add_executable(coast_fuzz_${name} ${FUZZ_SOURCES})
+  target_link_libraries(coast_fuzz_${name} PRIVATE coast_options ${FUZZ_DEPS})
+  target_link_options(coast_fuzz_${name} PRIVATE -fsanitize=fuzzer)
+endfunction()

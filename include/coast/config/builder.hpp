@@ -1,0 +1,40 @@
+#pragma once
+// How a parser makes a tree: node by node, each with its line. Knows no file format.
+
+#include <cstddef>
+#include <filesystem>
+#include <memory>
+#include <string>
+
+#include "coast/config/node.hpp"
+
+namespace coast::config {
+
+/// Builds a tree from the top down. Every id is an earlier return value of this builder.
+class TreeBuilder {
+ public:
+  using Id = std::size_t;
+
+  /// @param file names the tree in messages; relative paths in it are taken from its folder
+  explicit TreeBuilder(std::filesystem::path file);
+
+  /// The top of the tree: exactly one of these, first.
+  Id root_map(long line);
+  Id root_list(long line);
+
+  /// @param parent a map or a list  @param key of the map; empty in a list
+  /// @throws std::invalid_argument the parent is a scalar
+  Id add_map(Id parent, std::string key, long line);
+  Id add_list(Id parent, std::string key, long line);
+  Id add_scalar(Id parent, std::string key, std::string text, long line);
+  /// A key without a value ("key:" or "key: null"): reading it is an error that says so.
+  Id add_null(Id parent, std::string key, long line);
+
+  /// The finished tree's root; the builder is empty afterwards.
+  [[nodiscard]] Node finish();
+
+ private:
+  std::shared_ptr<TreeData> data_;
+};
+
+}  // namespace coast::config

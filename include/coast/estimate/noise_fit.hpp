@@ -1,0 +1,50 @@
+#pragma once
+// GNSS and IMU noise that make the innovations as likely as possible.
+
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "coast/estimate/forward_filter.hpp"
+
+namespace coast::estimate {
+
+/// What multiplies or adds to the stated noise. The neutral value changes nothing.
+struct NoiseAdjustment {
+  GnssScale gnss_scale;
+  CorrelatedGnss correlated_gnss;
+  double gyro_factor = 1.0;   ///< on the gyro's white-noise density (standard deviation)
+  double accel_factor = 1.0;  ///< on the accelerometer's
+};
+
+/// Which parts are free; the others keep the value of the start.
+struct NoiseFitChoice {
+  bool gnss_scale = true;
+  bool correlated_gnss = true;
+  bool imu_white_noise = false;
+};
+
+struct NoiseFit {
+  NoiseAdjustment adjustment;
+  double log_likelihood_before = 0.0;  ///< with the stated noise
+  double log_likelihood_after = 0.0;
+  std::size_t innovations = 0;  ///< position and velocity innovations that entered
+  int evaluations = 0;
+  /// Standard deviations of the logarithms of the free parameters at the optimum (from the curvature), in the order of `names`.
+  std::vector<std::string> names;
+  std::vector<double> log_sd;
+};
+
+[[nodiscard]] noise::ImuErrorModel adjusted(const noise::ImuErrorModel& model, const NoiseAdjustment& adjustment);
+[[nodiscard]] FilterOptions adjusted(const FilterOptions& options, const NoiseAdjustment& adjustment);
+
+/// Maximum likelihood of the innovations (prediction-error decomposition; Harvey 1989, section 3.4) over the logarithms of the
+/// free parameters, by L-BFGS-B with central differences. The gate is open while fitting: what the final filter then refuses
+/// is left out and the fit repeated once.
+/// @param start  state at the first epoch, covariance from ForwardFilter::initial_state
+/// @throws NumericalError  the filter fails at the start values
+[[nodiscard]] NoiseFit fit_noise(const Mission& mission, const noise::ImuErrorModel& model, const FilterOptions& options,
+                                 const NoiseFitChoice& choice, const std::function<FilterState(const ForwardFilter&)>& start,
+                                 const std::function<void(double)>& progress = {});
+
+}  // namespace coast::estimate

@@ -1,0 +1,127 @@
+#pragma once
+// Which error states the filter carries, in which order, and how each acts.
+
+#include <Eigen/Core>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "coast/noise/error_model.hpp"
+
+namespace coast::estimate {
+
+/// Indices of the navigation states, errors = estimate - truth in e: position m, velocity m/s, attitude psi_e rad.
+inline constexpr int kPos = 0;
+inline constexpr int kVel = 3;
+inline constexpr int kPsi = 6;
+inline constexpr int kNav = 9;
+
+/// GNSS position errors that last from fix to fix: a stationary Gauss-Markov process each in N, E, D at the antenna.
+struct CorrelatedGnss {
+  double horizontal_m = 0.0;  ///< stationary sd per axis, 0: none
+  double vertical_m = 0.0;
+  double time_s = 60.0;  ///< correlation time
+};
+
+/// What is estimated beside the IMU's errors. A standard deviation of zero leaves the states out.
+struct AuxiliaryStates {
+  double lever_arm_sd_m = 0.0;    ///< prior sd of each component, body axes
+  double time_offset_sd_s = 0.0;  ///< prior sd of the GNSS time offset
+  double mounting_sd = 0.0;       ///< prior sd of the vehicle's yaw and pitch against the body, rad
+  CorrelatedGnss correlated_gnss;
+};
+
+class StateLayout {
+ public:
+  /// States of one process.
+  struct Block {
+    noise::ProcessPtr process;
+    int offset = 0;  ///< of its first state
+    int size = 0;
+    std::string name;           ///< "gyro_x gauss_markov"
+    Eigen::RowVectorXd output;  ///< h of the process
+  };
+  /// A block that acts on the navigation states through a sensor axis:
+  /// error of the sensor in b = response_b * (h x) * (1 or signal_b . true signal in b).
+  struct SensorBlock : Block {
+    noise::Sensor sensor = noise::Sensor::kGyro;
+    Eigen::Vector3d response_b;
+    std::optional<Eigen::Vector3d> signal_b;
+  };
+
+  /// @param C_s_b sensor to body axes: processes live in sensor axes
+  StateLayout(const noise::ImuErrorModel& model, const Eigen::Matrix3d& C_s_b, const AuxiliaryStates& auxiliary);
+
+  [[nodiscard]] int size() const { return size_; }
+  [[nodiscard]] int sensor_end() const { return sensor_end_; }  ///< navigation and sensor states are [0, sensor_end)
+  [[nodiscard]] const std::vector<SensorBlock>& sensors() const { return sensors_; }
+  [[nodiscard]] const std::vector<Block>& auxiliaries() const { return auxiliaries_; }
+  [[nodiscard]] std::optional<int> lever_arm() const { return lever_arm_; }      ///< 3 states, b
+  [[nodiscard]] std::optional<int> time_offset() const { return time_offset_; }  ///< 1 state, s
+  [[nodiscard]] std::optional<int> mounting() const { return mounting_; }        ///< pitch, yaw, rad
+  [[nodiscard]] std::optional<int> gnss_error() const { return gnss_error_; }    ///< 3 states, N, E, D
+  /// White-noise densities in body axes, [signal]^2/Hz.
+  [[nodiscard]] const Eigen::Matrix3d& gyro_density_b() const { return gyro_density_b_; }
+  [[nodiscard]] const Eigen::Matrix3d& accel_density_b() const { return accel_density_b_; }
+  /// Shortest correlation time of any state, s; infinity where all are constant.
+  [[nodiscard]] double shortest_time() const { return shortest_time_; }
+
+  /// Covariance of the non-navigation states at the start (size x size, navigation rows zero).
+  [[nodiscard]] Eigen::MatrixXd initial_covariance() const;
+  /// Sensor and auxiliary blocks in the order of their states.
+  template <typename Visit>
+  void for_each_block(Visit visit) const {
+    for (const Block& block : sensors_) visit(block);
+    for (const Block& block : auxiliaries_) visit(block);
+  }
+
+ private:
+  void add_sensor(const noise::ImuErrorModel& model, noise::Sensor sensor, const Eigen::Matrix3d& C_s_b);
+  int add_auxiliary(const std::string& name, double sigma, double beta, int count);
+  int size_ = kNav;
+  int sensor_end_ = kNav;
+  std::vector<SensorBlock> sensors_;
+  std::vector<Block> auxiliaries_;
+  std::optional<int> lever_arm_;
+  std::optional<int> time_offset_;
+  std::optional<int> mounting_;
+  std::optional<int> gnss_error_;
+  Eigen::Matrix3d gyro_density_b_ = Eigen::Matrix3d::Zero();
+  Eigen::Matrix3d accel_density_b_ = Eigen::Matrix3d::Zero();
+  double shortest_time_ = 0.0;
+};
+
+/// D and Q_d of the sensor and auxiliary states over one interval, kept until another interval is asked for: most intervals of
+/// a mission are alike. Matrices that it works on have size() - kNav rows: row 0 is state kNav.
+class BlockTransitions {
+ public:
+  explicit BlockTransitions(const StateLayout& layout);
+  /// Takes the interval on. @param dt s, >= 0
+  const BlockTransitions& over(double dt);
+
+  /// M <- D M
+  void apply(Eigen::Ref<Eigen::MatrixXd> M) const;
+  /// M <- D' M
+  void apply_transposed(Eigen::Ref<Eigen::MatrixXd> M) const;
+  /// row <- row D, for a row over some first states
+  void apply_to_row(Eigen::Ref<Eigen::RowVectorXd> row) const;
+  /// P <- D P D' + Q_d
+  void propagate(Eigen::Ref<Eigen::MatrixXd> P) const;
+  /// Q_d of a block.
+  [[nodiscard]] auto driving_noise(const StateLayout::Block& block) const {
+    return Q_d_.block(block.offset - kNav, 0, block.size, block.size);
+  }
+
+ private:
+  struct Dense {
+    int row = 0;
+    Eigen::MatrixXd Phi;
+  };
+  const StateLayout& layout_;
+  double dt_ = -1.0;
+  Eigen::VectorXd diagonal_;  ///< phi of blocks of one state, 1 elsewhere
+  std::vector<Dense> dense_;  ///< Phi of larger blocks
+  Eigen::MatrixXd Q_d_;       ///< blocks stacked, as wide as the largest
+};
+
+}  // namespace coast::estimate

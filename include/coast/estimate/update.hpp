@@ -1,0 +1,77 @@
+#pragma once
+// Measurements. Each kind is one file in src/estimate/updates: it linearises at the current state, or says that it does not
+// apply. Sign: innovation nu = z - h(estimate) = -H d + noise, with d the error estimate - truth.
+
+#include <Eigen/Core>
+#include <optional>
+#include <string_view>
+
+#include "coast/estimate/filter_state.hpp"
+#include "coast/record/gnss.hpp"
+
+namespace coast::estimate {
+
+enum class UpdateKind { kGnssPosition, kGnssVelocity, kZeroVelocity, kNonHolonomic };
+[[nodiscard]] std::string_view name(UpdateKind kind);
+
+/// No measurement has more components than this, so that what is m x m needs no heap.
+inline constexpr int kMaxComponents = 3;
+using Components = Eigen::Matrix<double, Eigen::Dynamic, 1, Eigen::ColMajor, kMaxComponents, 1>;
+using ComponentCov = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::ColMajor, kMaxComponents, kMaxComponents>;
+
+/// A linearised measurement of m components, 2 or 3.
+struct Linearised {
+  UpdateKind kind = UpdateKind::kGnssPosition;
+  Components nu;      ///< m
+  Eigen::MatrixXd H;  ///< m x n
+  ComponentCov R;     ///< m x m, positive definite
+};
+
+/// What every update may look at beside the filter's state.
+struct UpdateContext {
+  const StateLayout& layout;
+  Eigen::Vector3d lever_arm_b;  ///< configured; the estimated part is in the state
+  Eigen::Vector3d omega_eb_b;   ///< angular rate against the Earth, rad/s
+  Eigen::Matrix3d C_n_e;        ///< at the position
+};
+
+/// GNSS position at the antenna.   z = r + C l + gnss error - v_a t_offset
+[[nodiscard]] Linearised gnss_position(const FilterState& state, const UpdateContext& context, const record::GnssFix& fix);
+/// GNSS velocity at the antenna.   z = v + C (omega x l)
+[[nodiscard]] std::optional<Linearised> gnss_velocity(const FilterState& state, const UpdateContext& context,
+                                                      const record::GnssFix& fix);
+/// Standing still.   0 = v_eb
+[[nodiscard]] Linearised zero_velocity(const FilterState& state, double sd_mps);
+
+/// A car's wheels neither slide sideways nor leave the road at `point_b`:  0 = rows y, z of C_b_v (C_e_b v + omega x p).
+struct NonHolonomic {
+  Eigen::Vector3d point_b = Eigen::Vector3d::Zero();  ///< m, body axes
+  double sd_lateral_mps = 0.1;
+  double sd_vertical_mps = 0.1;
+  double pitch = 0.0;  ///< configured vehicle against body, rad: C_v_b = Rz(yaw) Ry(pitch)
+  double yaw = 0.0;
+};
+[[nodiscard]] Linearised non_holonomic(const FilterState& state, const UpdateContext& context, const NonHolonomic& constraint);
+
+/// What an update did, and what the backward recursion needs of it.
+struct AppliedUpdate {
+  UpdateKind kind = UpdateKind::kGnssPosition;
+  Eigen::MatrixXd H;   ///< m x n
+  Eigen::MatrixXd K;   ///< n x m
+  ComponentCov S_inv;  ///< m x m
+  Components y;        ///< -nu, m
+};
+
+/// Innovation with its covariance, before it is used.
+struct Innovation {
+  ComponentCov S;       ///< m x m
+  Eigen::MatrixXd PHt;  ///< n x m
+  double nis = 0.0;     ///< nu' S^-1 nu
+  double log_likelihood = 0.0;
+};
+/// @throws NumericalError S is not positive definite
+[[nodiscard]] Innovation innovation(const FilterState& state, const Linearised& measurement);
+/// Corrects state and covariance (Joseph's form, expanded for a narrow gain) and returns the record for the smoother.
+[[nodiscard]] AppliedUpdate apply(const Linearised& measurement, const Innovation& innovation, FilterState& state);
+
+}  // namespace coast::estimate

@@ -1,0 +1,37 @@
+#pragma once
+// Time run backwards: what a mission looks like to a clock that shows t' = 2 mirror - t. The navigation equations keep their
+// form if velocities, body rates and the Earth's rate change sign; specific force, gravity, positions and attitudes stay.
+
+#include "coast/geo/time.hpp"
+#include "coast/ins/strapdown.hpp"
+#include "coast/record/gnss.hpp"
+#include "coast/record/imu.hpp"
+#include "coast/record/trajectory.hpp"
+
+namespace coast::ins {
+
+/// 2 mirror - t, exact to the nanosecond; its own inverse.
+[[nodiscard]] constexpr geo::GpsTime mirrored(geo::GpsTime t, geo::GpsTime mirror) {
+  return geo::GpsTime::from_nanoseconds(2 * mirror.nanoseconds() - t.nanoseconds());
+}
+
+/// The interval passed backwards: rotation exp(-phi), and u resolved at the interval's end, which is now its start.
+[[nodiscard]] BodyIncrement reversed(const BodyIncrement& increment);
+
+/// Velocity negated, time mirrored. Run on with `Strapdown(reversed(state, mirror), -kEarthRate)`.
+[[nodiscard]] record::NavState reversed(const record::NavState& state, geo::GpsTime mirror);
+
+/// What (dtheta, dv) of a recording stand for: integrals in moving body axes as the sensor gives them, or (phi, u) of a
+/// `BodyIncrement` as `compensate_chebyshev` leaves them.
+enum class IncrementKind { kRaw, kCompensated };
+
+/// Reverses a recording in place: order, time tags (the tag of a sample is again the end of its interval, the mirrored start),
+/// sign of rotation. Temperatures follow their samples; times of events stay those of the original. Reversing twice restores
+/// it.
+/// @note time tags are those of the intervals' starts, t - dt rounded to 1 ns: they keep strictly increasing.
+void reverse(record::ImuRecording& recording, geo::GpsTime mirror, IncrementKind kind = IncrementKind::kRaw);
+
+/// Reverses a GNSS recording in place: order, times, velocities.
+void reverse(record::GnssRecording& recording, geo::GpsTime mirror);
+
+}  // namespace coast::ins

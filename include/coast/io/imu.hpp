@@ -1,0 +1,69 @@
+#pragma once
+// IMU recordings from files, in the axes of the sensor.
+
+#include <Eigen/Core>
+#include <array>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "coast/config/node.hpp"
+#include "coast/io/table.hpp"
+#include "coast/io/time_column.hpp"
+#include "coast/record/imu.hpp"
+
+namespace coast::io {
+
+enum class TimeTag { kEnd, kCentre, kStart };
+
+/// Layout of raw binary records (`format: binary`).
+struct BinaryLayout {
+  enum class Type { kI16, kI32, kF32, kF64 };
+  Type type = Type::kI16;
+  int row = 0;            ///< numbers per record; 0: as many as the highest column asked for
+  long header_bytes = 0;  ///< left out at the start
+  bool big_endian = false;
+};
+
+/// The keys of `imu:` that say what the file means.
+///
+///     imu:
+///       file: imu.csv.gz
+///       format: auto                       # or csv | kf-gins | imr | binary; csv takes any delimiter
+///       gps_week: 2374
+///       columns: {time: tow_s, gyro: [5, 6, 7], accel: [fx, fy, fz], temperature: T}     # names, or numbers from 1
+///       units: {gyro: deg/s, accel: g}     # of rates; with `values: increments`: rad | deg, m/s
+///       scale: {gyro: 0.05, accel: 0.00333}                                              # counts to the unit
+///       values: rates                      # or increments
+///       time: {kind: sow, unit: ms, offset_s: 243000.0}
+///       time_tag: end                      # or centre | start
+///       binary: {type: i16, row: 6}
+///
+/// Without `columns` a CSV file needs the default header: time_s, gyro_x_radps, .., accel_x_mps2, .., [temperature_degC].
+struct ImuFileOptions {
+  std::filesystem::path file;
+  std::string format = "auto";
+  std::vector<Column> time_columns;  ///< empty: the default name
+  std::vector<Column> gyro_columns;  ///< three, or empty: the default names
+  std::vector<Column> accel_columns;
+  Column temperature_column;  ///< empty: none, or the default name where the header has it
+  double gyro_to_si = 1.0;    ///< to rad/s (rates) or rad (increments), scale included
+  double accel_to_si = 1.0;   ///< to m/s^2 or m/s
+  bool increments = false;
+  TimeOptions time;
+  TimeTag time_tag = TimeTag::kEnd;
+  BinaryLayout binary;
+
+  [[nodiscard]] static ImuFileOptions from(const config::Node& imu);
+};
+
+/// Reads an IMU file into increments. Intervals tile time: each begins where the one before ends. Rates are taken as means over
+/// the interval that ends at the tag; over missing samples (a step of more than 1.5 median intervals) the rate is taken linear
+/// between its neighbours, with an `imu_gap` event. Rows with NaN are left out (then a gap), so are leading rows of exact
+/// zeros.
+/// @param near an instant of the mission: gives the week where the file and the options state none
+/// @throws InputError  whatever cannot be read as stated; with file and line
+[[nodiscard]] record::ImuRecording read_imu(const ImuFileOptions& options, std::optional<geo::GpsTime> near = std::nullopt);
+
+}  // namespace coast::io

@@ -1,0 +1,82 @@
+#pragma once
+// Files that coast writes. Each is written under a temporary name beside its own and renamed when whole, so that a crash or a
+// full disk leaves no half file under a final name.
+
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "coast/geo/earth.hpp"
+#include "coast/record/error.hpp"
+#include "coast/record/gnss.hpp"
+#include "coast/record/imu.hpp"
+#include "coast/record/trajectory.hpp"
+
+namespace coast::io {
+
+/// A file that appears whole or not at all. Where the target exists and is no regular file (a pipe, a device), it is written
+/// directly.
+class AtomicFile {
+ public:
+  /// @throws OutputError  the folder is missing or not writable; names the path
+  explicit AtomicFile(const std::filesystem::path& path);
+  ~AtomicFile();  ///< removes the temporary file if it was not committed
+  AtomicFile(const AtomicFile&) = delete;
+  AtomicFile& operator=(const AtomicFile&) = delete;
+
+  /// @throws OutputError  e.g. "No space left on device"
+  void write(std::string_view bytes);
+  /// Flushes, closes, renames.  @throws OutputError
+  void commit();
+  [[nodiscard]] const std::filesystem::path& path() const { return path_; }
+
+ private:
+  [[noreturn]] void fail(int error);
+  std::filesystem::path path_;
+  std::filesystem::path written_;  ///< the temporary name
+  int descriptor_ = -1;
+};
+
+/// Writes a whole text at once.
+void write_text(const std::filesystem::path& path, std::string_view text);
+
+/// Takes a trajectory epoch by epoch, in order of time.
+class TrajectoryWriter {
+ public:
+  virtual ~TrajectoryWriter() = default;
+  /// @throws OutputError
+  virtual void write(const record::TrajectoryEpoch& epoch) = 0;
+  /// Makes the file appear. Without it nothing is left behind.  @throws OutputError
+  virtual void close() = 0;
+};
+
+/// `.nav`: week sow lat lon h vn ve vd roll pitch yaw. 1e-11 deg (1 um), 1e-5 m, 1e-6 m/s, 1e-9 deg; some 1 million epochs/s.
+[[nodiscard]] std::unique_ptr<TrajectoryWriter> make_nav_writer(const std::filesystem::path& path);
+/// CSV with header: gps_week, sow_s, position, velocity, attitude; standard deviations (N, E, D; roll, pitch, yaw) and
+/// correlations of position, velocity and attitude errors.
+[[nodiscard]] std::unique_ptr<TrajectoryWriter> make_csv_writer(const std::filesystem::path& path);
+/// SBET (136-byte records of doubles, rad, little endian). Specific force and angular rate are zero, wander angle zero: the
+/// attitude's yaw is the true heading. With `smrmsg` the file of standard deviations beside it (80-byte records).
+[[nodiscard]] std::unique_ptr<TrajectoryWriter> make_sbet_writer(const std::filesystem::path& sbet,
+                                                                 const std::filesystem::path& smrmsg);
+/// RTKLIB `.pos` (GPST calendar, degrees, ellipsoidal), positions and velocities with signed-root covariances, Q = 1.
+[[nodiscard]] std::unique_ptr<TrajectoryWriter> make_pos_writer(const std::filesystem::path& path);
+/// KML line with altitudes, thinned to steps of at least `min_step_m`.
+[[nodiscard]] std::unique_ptr<TrajectoryWriter> make_kml_writer(const std::filesystem::path& path, std::string_view name,
+                                                                double min_step_m = 1.0);
+
+/// One of `output.formats`: nav | csv | sbet | pos | kml; the extension is added to `stem`.
+/// @throws std::invalid_argument  another name
+[[nodiscard]] std::unique_ptr<TrajectoryWriter> make_trajectory_writer(std::string_view format,
+                                                                       const std::filesystem::path& stem);
+/// The names that make_trajectory_writer knows.
+[[nodiscard]] const std::vector<std::string_view>& trajectory_formats();
+
+/// GNSS fixes as RTKLIB `.pos` with signed-root covariances; reads back to the digits printed (1e-9 deg, 1e-4 m, 1e-5 m of sd).
+void write_gnss_pos(const std::filesystem::path& path, const record::GnssRecording& gnss);
+/// IMU as CSV with the default header: mean rates over each interval.
+void write_imu_csv(const std::filesystem::path& path, const record::ImuRecording& imu);
+
+}  // namespace coast::io

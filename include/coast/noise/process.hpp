@@ -1,0 +1,69 @@
+#pragma once
+// A stochastic process of one sensor axis as a linear state-space block. Any sum of blocks is an error model.
+
+#include <Eigen/Core>
+#include <memory>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "coast/config/node.hpp"
+#include "coast/geo/units.hpp"
+
+namespace coast::noise {
+
+enum class Sensor { kGyro, kAccel };
+
+/// What the output of a process is multiplied with to give the error of the axis it belongs to.
+enum class Input {
+  kOne,       ///< additive error
+  kOwnAxis,   ///< true signal of the same axis: scale factor
+  kNextAxis,  ///< true signal of the next axis (x -> y -> z -> x): misalignment
+  kPrevAxis,  ///< true signal of the previous axis: misalignment
+};
+
+/// One process: error = (h x + white noise) * input, with x[k+1] = Phi(dt) x[k] + w[k], var w = Q_d(dt).
+///
+/// All values are SI; `signal` below is rad/s (gyro) or m/s^2 (accelerometer) for additive processes, 1 otherwise.
+class Process {
+ public:
+  virtual ~Process() = default;
+  [[nodiscard]] virtual std::string_view name() const = 0;
+  [[nodiscard]] virtual Input input() const { return Input::kOne; }
+  [[nodiscard]] virtual int states() const = 0;
+  /// Phi(dt), states x states. @param dt s, > 0
+  virtual void transition(double dt, Eigen::Ref<Eigen::MatrixXd> Phi) const = 0;
+  /// Q_d(dt), [signal]^2.
+  virtual void driving_noise(double dt, Eigen::Ref<Eigen::MatrixXd> Q_d) const = 0;
+  /// h, 1 x states: how the states add up to the error.
+  virtual void output(Eigen::Ref<Eigen::RowVectorXd> h) const = 0;
+  /// Covariance of x at the start of a mission.
+  virtual void initial_covariance(Eigen::Ref<Eigen::MatrixXd> P) const = 0;
+  /// Density of the white part of the output, [signal]^2/Hz; zero for a process that has states only.
+  [[nodiscard]] virtual geo::Psd white_density() const { return {}; }
+  /// The entry of an error-model file that makes this process again, in SI units.
+  [[nodiscard]] virtual std::string yaml() const = 0;
+};
+using ProcessPtr = std::shared_ptr<const Process>;
+
+/// What an entry of the file is read for.
+struct EntryContext {
+  Sensor sensor;
+  double rate_hz;  ///< of the model file: `variance_per_sample` refers to it; 0 where the file does not say
+};
+
+/// One line of the registry: a name, help for people, and how an entry becomes processes.
+struct Registration {
+  std::string_view name;
+  std::string_view help;          ///< parameters with units and meaning
+  std::string_view gyro_example;  ///< a valid entry for a gyro axis
+  std::string_view accel_example;
+  std::vector<ProcessPtr> (*make)(const config::Node& entry, const EntryContext& context);
+};
+
+/// Every process that exists, in the order of the manual.
+[[nodiscard]] const std::vector<Registration>& registry();
+/// @throws InputError  unknown process (names the nearest), missing or negative value, wrong unit: with file and line
+[[nodiscard]] std::vector<ProcessPtr> make_processes(const config::Node& entry, const EntryContext& context);
+
+}  // namespace coast::noise

@@ -1,0 +1,106 @@
+#pragma once
+// Curves as a page stores them, and the decimation that brings a stream of any length down to them.
+
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <optional>
+#include <vector>
+
+namespace coast::report {
+
+/// One curve. x and y have one length; a curve need not be sorted in x (a track), a time series is.
+struct Series {
+  std::vector<double> x;
+  std::vector<double> y;
+  std::vector<double> t;              ///< of a track: seconds since Page::start; ties the plan to the time axes. Else empty
+  std::vector<std::uint32_t> breaks;  ///< the curve is interrupted before each of these indices; increasing
+  std::uint64_t not_finite = 0;       ///< values left out because they are not finite; said under the panel
+
+  /// Lower and upper bound, shaded. Has its own x: its extremes need not coincide with the curve's.
+  struct Band {
+    std::vector<double> x;
+    std::vector<double> lower;
+    std::vector<double> upper;
+    std::vector<std::uint32_t> breaks;
+  };
+  std::optional<Band> band;
+};
+
+struct DecimationOptions {
+  std::size_t max_points = 16000;  ///< of the result, >= 16; exceeded only where the gaps alone come near that number
+  double max_gap = std::numeric_limits<double>::infinity();  ///< a longer step in t (tracks) or x interrupts the curve
+};
+
+/// Decimates a stream of samples in bounded memory (about 1 MB at 16000 points) so that no peak is hidden.
+///
+/// Consecutive samples are gathered into buckets of 2^k; a bucket keeps the samples with its least and its greatest y (for
+/// a track, of x too) at their true x, and whenever the buckets exceed the limit each two are merged, which is exact.
+/// So the extremes of every bucket, hence of the whole, and both ends of every uninterrupted piece are among the kept;
+/// nothing is lost up to max_points - 2 samples (a track: half of that). Of n samples a bucket holds at most about
+/// 4 n / max_points (a track: twice that).
+/// A band keeps the least lower and the greatest upper bound of each bucket, between its extremes (at an end: there).
+/// A sample that is not finite is counted and interrupts the curve.
+class Decimator {
+ public:
+  /// @throws std::invalid_argument max_points < 16
+  explicit Decimator(const DecimationOptions& options = {});
+
+  void add(double x, double y);
+  void add(double x, double y, double lower, double upper);
+  /// A point of a plane curve at time t, s since Page::start. One Decimator takes one of the three kinds.
+  void add_track(double t, double x, double y);
+  /// The curve is interrupted before the next sample.
+  void interrupt() { new_piece_ = true; }
+
+  [[nodiscard]] Series finish() const;
+
+ private:
+  struct Sample {
+    double x;
+    double y;
+    double order;  ///< time of a track, else the number of the sample
+  };
+  struct Extremes {
+    Sample least;
+    Sample greatest;
+  };
+  struct Bounds {
+    double lower = std::numeric_limits<double>::infinity();
+    double upper = -std::numeric_limits<double>::infinity();
+  };
+  struct Piece {
+    Sample first;
+    Sample last;
+    std::size_t first_bucket;
+  };
+
+  void add_sample(const Sample& sample, const Bounds& bounds, double step_coordinate);
+  void open_bucket(const Sample& sample, const Bounds& bounds);
+  void widen_bucket(const Sample& sample, const Bounds& bounds);
+  void merge_pairs();
+  [[nodiscard]] std::size_t bucket_limit() const;
+  [[nodiscard]] std::size_t end_of(std::size_t piece) const;
+  void append_piece(std::size_t piece, Series& out) const;
+  void append_band(std::size_t piece, Series::Band& band) const;
+
+  DecimationOptions options_;
+  std::vector<Extremes> along_y_;  ///< one per bucket, as the next two
+  std::vector<Extremes> along_x_;  ///< tracks only
+  std::vector<Bounds> bounds_;
+  std::vector<Piece> pieces_;
+  std::uint64_t bucket_size_ = 1;
+  std::uint64_t last_bucket_count_ = 0;
+  std::uint64_t samples_ = 0;
+  std::uint64_t not_finite_ = 0;
+  std::size_t room_for_gaps_ = 0;
+  double previous_step_coordinate_ = 0.0;
+  bool new_piece_ = true;
+  bool track_ = false;
+  bool has_band_ = false;
+};
+
+/// The same for arrays at hand; the band is decimated on its own x.  @throws std::invalid_argument lengths differ
+[[nodiscard]] Series decimate(const Series& series, const DecimationOptions& options = {});
+
+}  // namespace coast::report

@@ -1,0 +1,93 @@
+#pragma once
+// A scenario file: a motion, an IMU and a GNSS receiver on it; and the recording that they give.
+
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "coast/config/node.hpp"
+#include "coast/ins/mounting.hpp"
+#include "coast/noise/error_model.hpp"
+#include "coast/record/gnss.hpp"
+#include "coast/record/imu.hpp"
+#include "coast/record/trajectory.hpp"
+#include "coast/simulate/gnss.hpp"
+#include "coast/simulate/imu.hpp"
+#include "coast/simulate/motions.hpp"
+
+namespace coast::simulate {
+
+/// How a file named in the scenario becomes a tree (io::load_yaml).
+using TreeReader = std::function<config::Node(const std::filesystem::path&)>;
+
+/// A GNSS outage that the run of the recording should study: fixes stay in the recording.
+struct StudiedOutage {
+  geo::GpsTime start;
+  double duration = 0.0;  ///< s
+};
+
+/// scenario.yaml (schema coast.scenario/1). Times are seconds since the start of the mission.
+///
+///     schema: coast.scenario/1
+///     trajectory: {kind: car_roundabout, duration_s: 900, static_s: 60, origin_deg_m: [46.52, 6.57, 400], course_deg: 30}
+///     imu:
+///       rate_hz: 100
+///       error_model: ../imu/fsas-em.yaml       # left out: an error-free IMU
+///       lever_arm_m: [0.3, -0.2, -1.1]         # IMU to antenna; forward, right, down
+///       axes: [x, y, z]                        # body forward, right, down in terms of sensor axes
+///       mounting_deg: [0, 0, 0]                # roll, pitch, yaw of the rotation that takes body to sensor, after `axes`
+///     gnss:
+///       rate_hz: 10
+///       phase_s: 0.0
+///       sd_m: [0.01, 0.01, 0.02]               # white; north, east, down
+///       correlated: {sd_m: [0.01, 0.01, 0.02], correlation_time_s: 120}
+///       stated_sd_m: [0.01, 0.01, 0.02]        # left out: white and correlated together
+///       velocity_sd_mps: [0.02, 0.02, 0.04]    # left out: no velocities
+///       time_offset_s: 0.0                     # a fix tagged t is valid at t - time_offset_s
+///       gaps: [{elapsed_s: 300, duration_s: 20}]
+///       degraded: [{elapsed_s: 500, duration_s: 30, quality: float, sd_factor: 30, stated_sd_factor: 10}]
+///     outages: [{manoeuvre: roundabout, duration_s: 20}, {elapsed_s: 500, duration_s: 60}]   # for the run to study
+///     start_gps: {week: 2374, sow: 208800}
+///     seed: 1
+struct Scenario {
+  std::string kind;
+  MotionParameters motion;
+  double imu_rate_hz = 100.0;
+  std::optional<std::filesystem::path> error_model_file;
+  std::optional<noise::ImuErrorModel> error_model;
+  ins::MountingOptions mounting;
+  GnssOptions gnss;
+  /// An outage of a scenario: at a time, or at the first manoeuvre of a name.
+  struct Outage {
+    std::string manoeuvre;           ///< empty where the time is given
+    double elapsed = 0.0;            ///< s since the start of the mission, or since the start of the manoeuvre
+    std::optional<double> duration;  ///< s; where absent, as long as the manoeuvre
+  };
+  std::vector<Outage> outages;
+  geo::GpsTime start;
+  std::uint64_t seed = 1;
+
+  /// @throws InputError  anything that cannot be simulated, with file and line; unknown keys with the nearest known one
+  [[nodiscard]] static Scenario from(const config::Node& root, const TreeReader& read);
+};
+
+/// What the scenario's vehicle would have recorded, and where it really was.
+struct SimulatedMission {
+  record::ImuRecording imu;  ///< sensor axes
+  record::GnssRecording gnss;
+  record::Trajectory truth;  ///< of the IMU's point, at the start and at every IMU epoch
+  std::vector<StudiedOutage> outages;
+};
+
+/// The scenario's outages on its motion, in the order given.
+/// @throws InputError  a manoeuvre does not occur in the motion (lists those that do)
+[[nodiscard]] std::vector<StudiedOutage> studied_outages(const Scenario& scenario, const MotionPlan& plan);
+
+/// @param threads  at least 1; the same bytes for any number
+/// @throws InputError  as `studied_outages`
+[[nodiscard]] SimulatedMission simulate(const Scenario& scenario, int threads = 1);
+
+}  // namespace coast::simulate

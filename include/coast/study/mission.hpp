@@ -1,0 +1,101 @@
+#pragma once
+// From recordings in body axes to a mission that can be filtered: standstill, start, and the solution itself.
+
+#include <functional>
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "coast/estimate/forward_filter.hpp"
+#include "coast/estimate/noise_fit.hpp"
+#include "coast/estimate/smoother.hpp"
+#include "coast/ins/alignment.hpp"
+
+namespace coast::study {
+
+/// Long work tells how far it is: what is being done, and the fraction of it.
+using Progress = std::function<void(const char* what, double fraction)>;
+
+/// How a mission is processed; filled from run.yaml.
+struct Setup {
+  Eigen::Matrix3d C_s_b = Eigen::Matrix3d::Identity();
+  Eigen::Vector3d lever_arm_b = Eigen::Vector3d::Zero();
+  double time_offset_s = 0.0;
+  bool high_order_compensation = false;
+  noise::ImuErrorModel model;
+  estimate::FilterOptions filter;
+  bool vehicle_forward = false;            ///< the body points where the vehicle goes
+  std::optional<ins::InitialState> start;  ///< given; otherwise found
+  std::optional<estimate::NoiseFitChoice> noise_fit;
+};
+
+/// A mission in body axes, aligned. Owns its recordings.
+class PreparedMission {
+ public:
+  /// Compensates, finds standstill, aligns and refines the start: from where alignment succeeded the
+  /// filter runs back to the first epoch, then the first minutes are smoothed and the start taken from there until it rests.
+  /// @throws InputError  IMU and GNSS do not overlap in time  @throws NumericalError  the alignment fails
+  PreparedMission(record::ImuRecording imu, record::GnssRecording gnss, Setup setup, const Progress& progress);
+  PreparedMission(const PreparedMission&) = delete;
+  PreparedMission& operator=(const PreparedMission&) = delete;
+
+  [[nodiscard]] const estimate::Mission& mission() const { return *mission_; }
+  [[nodiscard]] const Setup& setup() const { return setup_; }
+  [[nodiscard]] const noise::ImuErrorModel& model() const { return setup_.model; }
+  [[nodiscard]] const estimate::FilterOptions& options() const { return setup_.filter; }
+  [[nodiscard]] const ins::InitialState& start() const { return start_; }
+  [[nodiscard]] const std::optional<estimate::NoiseFit>& noise_fit() const { return noise_fit_; }
+  /// The start for a filter of any layout.
+  [[nodiscard]] estimate::FilterState start_state(const estimate::ForwardFilter& filter) const;
+  /// Takes noise as fitted from here on.
+  void adopt(const estimate::NoiseFit& fit);
+  /// Fits noise over at most the first `longest_s` seconds.
+  [[nodiscard]] estimate::NoiseFit fit(const estimate::NoiseFitChoice& choice, double longest_s,
+                                       const Progress& progress) const;
+
+  /// Filters backward from the far end, started from `end` with the start's uncertainty; delivers states in forward time
+  /// (from last to first) before each knot's updates. The recordings are reversed in place meanwhile.
+  void run_backward(const estimate::FilterState& end, const std::function<void(const estimate::FilterState&)>& at_knots,
+                    const Progress& progress);
+
+ private:
+  void find_standstill();
+  void align(const Progress& progress);
+  void run_back_to_first_epoch();
+  void refine_start(const Progress& progress);
+  void refine_antenna(const Progress& progress);
+  void fit_and_adopt(const Progress& progress);
+
+  record::ImuRecording imu_;
+  record::GnssRecording gnss_;
+  Setup setup_;
+  std::unique_ptr<estimate::Mission> mission_;
+  ins::InitialState start_;
+  Eigen::VectorXd start_sensor_errors_;  ///< estimated, by the layout of the setup; empty: zero
+  std::optional<estimate::NoiseFit> noise_fit_;
+};
+
+/// Forward and smoothed solution of one mission.
+struct Solution {
+  std::unique_ptr<estimate::ForwardFilter> filter;
+  estimate::FilterResult forward;
+  estimate::KnotStore knots;
+  std::vector<estimate::SmoothedKnot> smoothed;  ///< empty without smoother
+};
+
+struct SolutionOutputs {
+  record::EpochSink forward;
+  record::EpochSink smoothed;
+  std::function<void(const estimate::FilterState&)> at_knots;
+};
+[[nodiscard]] Solution solve(const PreparedMission& mission, const estimate::FilterOptions& options, bool smooth,
+                             const SolutionOutputs& outputs, const Progress& progress);
+
+/// Lever arm found by the data when it is left free around the configured one.
+struct LeverArmCheck {
+  Eigen::Vector3d difference_m;  ///< estimated minus configured, body axes
+  Eigen::Vector3d sd_m;
+};
+[[nodiscard]] LeverArmCheck check_lever_arm(const PreparedMission& mission, double prior_sd_m, const Progress& progress);
+
+}  // namespace coast::study

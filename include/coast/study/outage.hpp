@@ -1,0 +1,83 @@
+#pragma once
+// Artificial outages: how far forward and smoothed solution drift where GNSS is withheld.
+
+#include <optional>
+#include <vector>
+
+#include "coast/estimate/forward_filter.hpp"
+#include "coast/estimate/smoother.hpp"
+#include "coast/study/comparison.hpp"
+
+namespace coast::study {
+
+/// Fixes with start <= t < start + duration are withheld.
+struct Outage {
+  geo::GpsTime start;
+  double duration_s = 0.0;
+  [[nodiscard]] estimate::TimeSpan span() const { return {start, start + duration_s}; }
+};
+
+/// Errors of one solution inside one outage.
+struct OutageErrors {
+  Eigen::Vector3d max_m = Eigen::Vector3d::Zero();  ///< largest absolute value, N, E, D
+  Eigen::Vector3d rms_m = Eigen::Vector3d::Zero();
+  Eigen::Vector3d end_m = Eigen::Vector3d::Zero();        ///< at the last IMU epoch before the next used fix
+  Eigen::Vector3d sigma_end_m = Eigen::Vector3d::Zero();  ///< one sigma there
+  Eigen::Vector3d sigma_max_m = Eigen::Vector3d::Zero();  ///< largest one sigma inside the outage
+  double horizontal_max_m = 0.0;
+  Eigen::Vector3d attitude_max = Eigen::Vector3d::Zero();  ///< rad
+  std::size_t inside_95 = 0;  ///< errors of one axis and epoch within 1.96 sigma, epochs at most ten a second
+  std::size_t tested = 0;
+  std::optional<double> gnss_horizontal_max_m;  ///< against the withheld fixes, at the antenna
+  std::vector<ErrorSample> series;              ///< for figures, at most ten a second, some seconds around the outage
+};
+
+struct OutageResult {
+  Outage outage;
+  OutageErrors forward;
+  std::optional<OutageErrors> smoothed;
+};
+
+/// Gathers the errors of a streamed trajectory inside (and, for figures, around) one outage.
+class OutageRecorder {
+ public:
+  /// @param reference must outlive the recorder  @param lever_arm_b from the IMU to the reference's point
+  OutageRecorder(const Outage& outage, const record::Trajectory& reference, const Eigen::Vector3d& lever_arm_b,
+                 const estimate::Mission& mission);
+  void add(const record::TrajectoryEpoch& epoch);
+  [[nodiscard]] OutageErrors errors() const;
+
+ private:
+  void compare_with_fixes(const record::TrajectoryEpoch& epoch);
+
+  Outage outage_;
+  geo::GpsTime next_used_fix_;
+  const record::Trajectory& reference_;
+  Eigen::Vector3d lever_arm_b_;
+  const estimate::Mission& mission_;
+  std::optional<record::TrajectoryEpoch> previous_;
+  std::optional<ErrorSample> end_;
+  std::vector<ErrorSample> series_;
+  std::size_t next_fix_ = 0;
+  std::optional<double> gnss_horizontal_max_m_;
+};
+
+/// One outage every `every_s` seconds (the first after `first_s` of the mission), of each duration, none longer than a quarter
+/// of the mission and none beyond its end.
+struct OutageSweep {
+  double every_s = 60.0;
+  double first_s = 60.0;
+  std::vector<double> durations_s;
+};
+[[nodiscard]] std::vector<Outage> outages_of(const OutageSweep& sweep, geo::GpsTime from, geo::GpsTime to);
+
+/// Runs every outage by itself: the filter goes on from the last knot of the gap-free run before the outage and stops `tail_s`
+/// after it; the smoother runs over that stretch. What lies further away tells nothing about the outage that the stretch
+/// does not tell already. In order; on all threads.
+[[nodiscard]] std::vector<OutageResult> run_outages(const estimate::Mission& mission, const noise::ImuErrorModel& model,
+                                                    const estimate::FilterOptions& options, const estimate::KnotStore& knots,
+                                                    const record::Trajectory& reference, const Eigen::Vector3d& lever_arm_b,
+                                                    const std::vector<Outage>& outages, double tail_s = 60.0,
+                                                    const std::function<void(double)>& progress = {});
+
+}  // namespace coast::study

@@ -1,0 +1,31 @@
+#pragma once
+// The subcommands; one file each.
+
+#include <filesystem>
+#include <optional>
+#include <string>
+
+#include <Eigen/Core>
+
+namespace coast::cli {
+
+/// Options that every subcommand has.
+struct CommonOptions {
+  std::filesystem::path out;  ///< empty: the input's name + ".out"
+  bool quiet = false;
+  int threads = 0;  ///< 0: all
+};
+
+/// `coast process run.yaml`: recordings -> forward filter -> smoother -> trajectory, summary.json, report.html.
+void process(const std::filesystem::path& run_yaml, const CommonOptions& options);
+/// `coast simulate scenario.yaml`: imu.csv, gnss.pos, truth.nav and a run.yaml that processes them.
+void simulate(const std::filesystem::path& scenario_yaml, std::optional<std::uint64_t> seed, const CommonOptions& options);
+/// `coast outage study.yaml`: outages x error models -> drift tables and figures.
+void outage(const std::filesystem::path& study_yaml, const CommonOptions& options);
+/// `coast compare a.nav b.nav`: differences a - b in N, E, D and attitude.
+void compare(const std::filesystem::path& a, const std::filesystem::path& b, const Eigen::Vector3d& lever_arm_b,
+             const CommonOptions& options);
+/// `coast report DIR`: report.html again from report.json.
+void report(const std::filesystem::path& folder, const CommonOptions& options);
+
+}  // namespace coast::cli

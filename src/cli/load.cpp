@@ -1,0 +1,72 @@
+#include "load.hpp"
+
+#include <fmt/format.h>
+
+#include <cstdio>
+#include <system_error>
+
+#include "coast/geo/rotation.hpp"
+#include "coast/ins/mounting.hpp"
+#include "coast/io/inspect.hpp"
+#include "coast/record/error.hpp"
+
+namespace coast::cli {
+
+Recordings load(const RunConfig& config) {
+  Recordings recordings;
+  if (config.gnss.time.lacks_week() && !config.imu.time.lacks_week()) {
+    recordings.imu = io::read_imu(config.imu);
+    recordings.gnss = io::read_gnss(config.gnss, recordings.imu.samples.front().t);
+  } else {
+    recordings.gnss = io::read_gnss(config.gnss);
+    recordings.imu = io::read_imu(config.imu, recordings.gnss.fixes.front().t);
+  }
+  ins::to_body(recordings.imu, config.setup.C_s_b);
+  io::Inspection inspection = io::inspect(recordings.imu, recordings.gnss);
+  recordings.inspection = std::move(inspection.sentences);
+  recordings.inspection_events = std::move(inspection.events);
+  if (config.reference) recordings.reference = io::read_reference(*config.reference, recordings.imu.samples.front().t);
+  return recordings;
+}
+
+void print_inspection(const Recordings& recordings, bool quiet) {
+  if (!quiet)
+    for (const std::string& sentence : recordings.inspection) fmt::print("{}\n", sentence);
+  const auto warn = [](const record::Events& events) {
+    for (const record::Event& event : events)
+      if (event.severity == record::Event::Severity::kWarning) fmt::print(stderr, "warning: {}\n", event.text);
+  };
+  warn(recordings.imu.events);
+  warn(recordings.gnss.events);
+  if (recordings.reference) warn(recordings.reference->events);
+  warn(recordings.inspection_events);
+}
+
+ins::InitialState start_of(const GivenStart& start, geo::GpsTime near) {
+  ins::InitialState state;
+  state.nav.t = geo::GpsTime::from_week(near.week(), start.time_s);
+  state.nav.r_eb_e = geo::ecef_from_geodetic(start.position);
+  const Eigen::Matrix3d C_n_e = geo::C_n_e(start.position);
+  state.nav.v_eb_e = C_n_e * start.velocity_n;
+  state.nav.q_b_e = Eigen::Quaterniond(C_n_e * geo::dcm_from_euler(start.attitude));
+  state.sd_position_n = start.sd_position_n;
+  state.sd_velocity_n = start.sd_velocity_n;
+  state.sd_attitude_n = start.sd_attitude_n;
+  state.method = "given in the configuration";
+  return state;
+}
+
+std::filesystem::path output_folder(const std::filesystem::path& input, const std::filesystem::path& out) {
+  std::filesystem::path folder = out;
+  if (folder.empty()) {
+    folder = input;
+    folder.replace_extension(".out");
+  }
+  std::error_code failed;
+  std::filesystem::create_directories(folder, failed);
+  if (failed || !std::filesystem::is_directory(folder))
+    throw OutputError(folder.string(), failed ? failed.message() : "not a folder");
+  return folder;
+}
+
+}  // namespace coast::cli

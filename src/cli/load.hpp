@@ -1,0 +1,33 @@
+#pragma once
+// The recordings that a run.yaml names.
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "coast/record/gnss.hpp"
+#include "coast/record/imu.hpp"
+#include "coast/record/trajectory.hpp"
+#include "run_config.hpp"
+
+namespace coast::cli {
+
+struct Recordings {
+  record::ImuRecording imu;  ///< body axes
+  record::GnssRecording gnss;
+  std::optional<record::Trajectory> reference;
+  std::vector<std::string> inspection;  ///< what was understood, sentence by sentence
+  record::Events inspection_events;
+};
+
+/// Reads all files; a week that one of them does not state comes from the other.
+[[nodiscard]] Recordings load(const RunConfig& config);
+/// First thing on the terminal: what was understood, and the warnings.
+void print_inspection(const Recordings& recordings, bool quiet);
+/// The start of run.yaml in the week of the recordings.
+[[nodiscard]] ins::InitialState start_of(const GivenStart& start, geo::GpsTime near);
+/// `--out`, or the yaml's name + ".out"; made where it is missing.  @throws OutputError
+[[nodiscard]] std::filesystem::path output_folder(const std::filesystem::path& input, const std::filesystem::path& out);
+
+}  // namespace coast::cli

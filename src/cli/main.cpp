@@ -1,0 +1,100 @@
+#include <fmt/format.h>
+#include <tbb/global_control.h>
+
+#include <CLI/CLI.hpp>
+#include <cstdio>
+#include <new>
+
+#include "coast/record/error.hpp"
+#include "commands.hpp"
+
+namespace {
+
+constexpr int kDone = 0;
+constexpr int kFailed = 1;
+constexpr int kBadInput = 2;
+constexpr int kNumbersFailed = 3;
+
+using coast::cli::CommonOptions;
+
+CLI::App* subcommand(CLI::App& app, const char* name, const char* help, const char* example, CommonOptions& common) {
+  CLI::App* command = app.add_subcommand(name, help);
+  command->add_option("--out", common.out, "folder for the results (default: the input's name with .out)");
+  command->add_option("--threads", common.threads, "threads (default: all)")->check(CLI::Range(1, 1024));
+  command->add_flag("--quiet", common.quiet, "only warnings and errors");
+  command->footer(std::string("Example:\n  ") + example);
+  return command;
+}
+
+int run(int argc, char** argv) {
+  CLI::App app{"coast: post-mission INS/GNSS trajectories"};
+  app.set_version_flag("--version", COAST_VERSION);
+  app.require_subcommand(1);
+  app.footer("Exit status: 0 done, 2 bad input or configuration, 3 the numbers failed, 1 anything else.");
+  CommonOptions common;
+  std::filesystem::path input;
+  std::filesystem::path other;
+  std::optional<std::uint64_t> seed;
+  std::vector<double> lever_arm{0.0, 0.0, 0.0};
+
+  auto* process =
+      subcommand(app, "process", "IMU + GNSS -> forward filter -> smoother -> trajectory, summary.json, report.html",
+                 "coast process run.yaml --out results", common);
+  process->add_option("run", input, "run.yaml")->required();
+  process->callback([&] { coast::cli::process(input, common); });
+
+  auto* simulate = subcommand(app, "simulate", "trajectory + sensors -> a recording with its truth",
+                              "coast simulate configs/scenarios/car_roundabout.yaml --out recording --seed 7", common);
+  simulate->add_option("scenario", input, "scenario.yaml")->required();
+  simulate->add_option("--seed", seed, "seed of the simulated noise (default: the scenario's)");
+  simulate->callback([&] { coast::cli::simulate(input, seed, common); });
+
+  auto* outage =
+      subcommand(app, "outage", "outages x error models -> drift tables and figures", "coast outage study.yaml", common);
+  outage->add_option("study", input, "study.yaml")->required();
+  outage->callback([&] { coast::cli::outage(input, common); });
+
+  auto* compare = subcommand(app, "compare", "two trajectories: N, E, D and attitude differences, first minus second",
+                             "coast compare results/trajectory.nav truth.nav", common);
+  compare->add_option("first", input, ".nav, CSV or SBET")->required();
+  compare->add_option("second", other, ".nav, CSV or SBET: the differences are taken at its epochs")->required();
+  compare->add_option("--lever-arm", lever_arm, "from the first's point to the second's, forward right down, m")->expected(3);
+  compare->callback(
+      [&] { coast::cli::compare(input, other, Eigen::Vector3d(lever_arm[0], lever_arm[1], lever_arm[2]), common); });
+
+  auto* report = subcommand(app, "report", "the HTML page again from stored results", "coast report results", common);
+  report->add_option("folder", input, "folder of a run")->required();
+  report->callback([&] { coast::cli::report(input, common); });
+
+  std::optional<tbb::global_control> limit;
+  app.parse_complete_callback([&] {
+    if (common.threads > 0)
+      limit.emplace(tbb::global_control::max_allowed_parallelism, static_cast<std::size_t>(common.threads));
+  });
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    return app.exit(error) == 0 ? kDone : kBadInput;
+  }
+  return kDone;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  try {
+    return run(argc, argv);
+  } catch (const coast::InputError& error) {
+    fmt::print(stderr, "coast: {}\n", error.what());
+    return kBadInput;
+  } catch (const coast::NumericalError& error) {
+    fmt::print(stderr, "coast: {}\n", error.what());
+    return kNumbersFailed;
+  } catch (const std::bad_alloc&) {
+    fmt::print(stderr, "coast: out of memory\n");
+    return kFailed;
+  } catch (const std::exception& error) {
+    fmt::print(stderr, "coast: {}\n", error.what());
+    return kFailed;
+  }
+}

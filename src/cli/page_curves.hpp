@@ -1,0 +1,67 @@
+#pragma once
+// What TrajectoryCurves gathers while the trajectories are streamed: decimated, so that memory does not grow with the mission.
+
+#include <array>
+#include <optional>
+
+#include "coast/geo/earth.hpp"
+#include "coast/report/series.hpp"
+#include "process_page.hpp"
+
+namespace coast::cli {
+
+/// One decimator per component: N, E, D or roll, pitch, yaw or forward, right, down.
+using Decimators = std::array<report::Decimator, 3>;
+
+/// Curves over seconds since the start; angles in degrees.
+struct SolutionCurves {
+  SolutionCurves();
+  Decimators position;  ///< N, E in the tangent plane of the start, D as height loss since the start, m; band one sigma
+  Decimators velocity;  ///< N, E, D at the point, m/s; band one sigma
+  Decimators attitude;  ///< roll, pitch, yaw (unwrapped), deg; band one sigma
+  Decimators sd_position;
+  Decimators sd_velocity;
+  Decimators sd_attitude;
+};
+
+/// North-east-down at the point, renewed only where the point has moved: per epoch it costs a product instead of the
+/// inversion to geodetic coordinates. Rotation good to 3e-6 rad, height to 3e-5 m.
+class NearbyFrame {
+ public:
+  void move_to(const Eigen::Vector3d& r_e);
+  [[nodiscard]] Eigen::Matrix3d C_e_n() const { return frame_->rotation().transpose(); }
+  [[nodiscard]] double height(const Eigen::Vector3d& r_e) const { return height_ - frame_->to_ned(r_e).z(); }
+
+ private:
+  std::optional<geo::LocalFrame> frame_;
+  double height_ = 0.0;  ///< of the frame's origin, m
+};
+
+struct TrajectoryCurves::Curves {
+  explicit Curves(const record::NavState& nav);
+  void add(const record::TrajectoryEpoch& epoch, SolutionCurves& to, double& last_yaw);
+  void add_delivered(const record::TrajectoryEpoch& epoch);
+
+  geo::GpsTime start;
+  geo::LocalFrame local;  ///< origin at the start
+  double start_height = 0.0;
+  double start_yaw = 0.0;
+  NearbyFrame nearby;
+
+  SolutionCurves forward;
+  SolutionCurves smoothed;
+  double forward_yaw = 0.0;  ///< last one, unwrapped, rad
+  double smoothed_yaw = 0.0;
+
+  // Of the trajectory that is delivered:
+  report::Decimator track;     ///< east, north
+  report::Decimator height;    ///< ellipsoidal, m
+  report::Decimator distance;  ///< travelled since the start, m
+  report::Decimator speed;     ///< horizontal, m/s
+  Decimators body_velocity;    ///< forward, right, down, m/s
+  report::Decimator slip;      ///< course minus heading, deg, where the speed gives a course
+  double travelled = 0.0;
+  std::optional<record::NavState> previous;
+};
+
+}  // namespace coast::cli

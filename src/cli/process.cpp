@@ -1,0 +1,298 @@
+#include "commands.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+#include "coast/estimate/chi_square.hpp"
+#include "coast/io/writers.hpp"
+#include "coast/report/render.hpp"
+#include "load.hpp"
+#include "process_page.hpp"
+#include "process_result.hpp"
+#include "progress.hpp"
+#include "run_config.hpp"
+#include "state_tracks.hpp"
+#include "summary.hpp"
+#include "trajectory_output.hpp"
+
+namespace coast::cli {
+
+namespace {
+
+constexpr double kReferenceInterval = 0.1;  // s between the epochs of the gap-free run that outages are compared with
+
+/// The run, stage by stage; each stage leaves its part in `result`.
+class ProcessRun {
+ public:
+  ProcessRun(const RunConfig& config, Recordings recordings, std::filesystem::path out, const study::Progress& progress)
+      : config_(config),
+        out_(std::move(out)),
+        progress_(progress),
+        result_(what_was_read(recordings)),
+        reference_(std::move(recordings.reference)),
+        setup_(setup_of(config, recordings)),
+        mission_(std::move(recordings.imu), std::move(recordings.gnss), setup_, progress),
+        curves_(mission_.start().nav) {
+    describe_input();
+  }
+
+  void solve_without_outages();
+  void solve_and_write();
+  void study_sweep();
+  void check_lever_arm();
+  void separate_forward_and_backward();
+  /// summary.json, report.html, report.json, run.resolved.yaml. @return the lines for the terminal
+  [[nodiscard]] std::string write_results();
+
+ private:
+  [[nodiscard]] static ProcessResult what_was_read(const Recordings& recordings);
+  [[nodiscard]] static study::Setup setup_of(const RunConfig& config, const Recordings& recordings);
+  void describe_input();
+  [[nodiscard]] std::vector<study::Outage> outages() const;
+  void count_innovations();
+  void note_estimates() const;
+
+  const RunConfig& config_;
+  std::filesystem::path out_;
+  const study::Progress& progress_;
+  ProcessResult result_;
+  std::optional<record::Trajectory> reference_;
+  study::Setup setup_;
+  study::PreparedMission mission_;
+  record::Trajectory gap_free_;  ///< smoothed, thinned
+  study::Solution solution_;
+  TrajectoryCurves curves_;
+  std::vector<KnotState> forward_knots_;
+};
+
+ProcessResult ProcessRun::what_was_read(const Recordings& recordings) {
+  ProcessResult result;
+  const auto add = [&result](const record::Events& events) {
+    result.events.insert(result.events.end(), events.begin(), events.end());
+  };
+  add(recordings.imu.events);
+  add(recordings.gnss.events);
+  if (recordings.reference) add(recordings.reference->events);
+  add(recordings.inspection_events);
+  result.inspection = recordings.inspection;
+  result.imu_samples = recordings.imu.samples.size();
+  result.imu_rate_hz = recordings.imu.rate_hz;
+  for (const record::Event& event : recordings.imu.events)
+    if (event.kind == "imu_gap") result.imu_gaps += event.count;
+  return result;
+}
+
+study::Setup ProcessRun::setup_of(const RunConfig& config, const Recordings& recordings) {
+  study::Setup setup = config.setup;
+  if (config.start) setup.start = start_of(*config.start, recordings.gnss.fixes.front().t);
+  return setup;
+}
+
+void ProcessRun::describe_input() {
+  const estimate::Mission& mission = mission_.mission();
+  result_.start = mission_.start().nav.t;
+  result_.end = mission.imu.samples.back().t;
+  result_.alignment = mission_.start().method;
+  result_.noise_fit = mission_.noise_fit();
+  std::map<record::FixQuality, std::size_t> counts;
+  for (const record::GnssFix& fix : mission.gnss.fixes)
+    if (fix.t >= result_.start && fix.t <= result_.end) {
+      ++result_.gnss_epochs;
+      ++counts[fix.quality];
+    }
+  result_.qualities.assign(counts.begin(), counts.end());
+}
+
+std::vector<study::Outage> ProcessRun::outages() const {
+  std::vector<study::Outage> outages;
+  for (const OutageSeconds& outage : config_.outages) {
+    const geo::GpsTime start = geo::GpsTime::from_week(result_.start.week(), outage.start_s);
+    if (start < result_.start || start > result_.end)
+      throw InputError({config_.file.string(), 0, fmt::format("an outage starts at {:.3f} s", outage.start_s),
+                        fmt::format("a time within the mission, {:.3f} to {:.3f} s", result_.start.sow(), result_.end.sow()),
+                        ""});
+    outages.push_back({start, outage.duration_s});
+  }
+  return outages;
+}
+
+// The run that nothing is withheld from: what outages are measured against where there is no reference.
+void ProcessRun::solve_without_outages() {
+  if (config_.outages.empty() || reference_) return;
+  study::SolutionOutputs outputs;
+  const auto keep = [this](const record::TrajectoryEpoch& epoch) {
+    if (gap_free_.states.empty() || epoch.nav.t - gap_free_.states.back().t >= kReferenceInterval - 1e-6)
+      gap_free_.states.push_back(epoch.nav);
+  };
+  (config_.smooth ? outputs.smoothed : outputs.forward) = keep;
+  static_cast<void>(study::solve(mission_, mission_.options(), config_.smooth, outputs, progress_));
+}
+
+void ProcessRun::solve_and_write() {
+  const std::vector<study::Outage> gaps = outages();
+  estimate::FilterOptions options = mission_.options();
+  for (const study::Outage& gap : gaps) options.withheld.push_back(gap.span());
+  const bool keep_gap_free = gaps.empty() && config_.sweep && !reference_;
+
+  TrajectoryOutput forward_output(config_.output);
+  TrajectoryOutput output(config_.output);
+  forward_output.add_writer(io::make_nav_writer(out_ / "forward.nav"));
+  output.add_writer(io::make_nav_writer(out_ / "trajectory.nav"));
+  output.add_writer(io::make_csv_writer(out_ / "trajectory.csv"));
+  for (const std::string& format : config_.output.formats)
+    if (format != "nav" && format != "csv") output.add_writer(io::make_trajectory_writer(format, out_ / "trajectory"));
+
+  const record::Trajectory& truth = reference_ ? *reference_ : gap_free_;
+  const Eigen::Vector3d arm = reference_ ? config_.reference_lever_arm_b : Eigen::Vector3d::Zero();
+  study::Comparison forward_comparison(truth, arm);
+  study::Comparison comparison(truth, arm);
+  std::vector<study::OutageRecorder> forward_recorders;
+  std::vector<study::OutageRecorder> recorders;
+  for (const study::Outage& gap : gaps) {
+    forward_recorders.emplace_back(gap, truth, arm, mission_.mission());
+    recorders.emplace_back(gap, truth, arm, mission_.mission());
+  }
+
+  const auto deliver = [&](const record::TrajectoryEpoch& epoch) {
+    output.add(epoch);
+    curves_.add_smoothed(epoch);
+    if (reference_) comparison.add(epoch);
+    for (auto& recorder : recorders) recorder.add(epoch);
+    if (keep_gap_free && (gap_free_.states.empty() || epoch.nav.t - gap_free_.states.back().t >= kReferenceInterval - 1e-6))
+      gap_free_.states.push_back(epoch.nav);
+  };
+  study::SolutionOutputs outputs;
+  outputs.forward = [&](const record::TrajectoryEpoch& epoch) {
+    forward_output.add(epoch);
+    curves_.add_forward(epoch);
+    if (reference_) forward_comparison.add(epoch);
+    for (auto& recorder : forward_recorders) recorder.add(epoch);
+    if (!config_.smooth) deliver(epoch);
+  };
+  if (config_.smooth) outputs.smoothed = deliver;
+  outputs.at_knots = [this](const estimate::FilterState& state) { forward_knots_.push_back(knot_state(state)); };
+  solution_ = study::solve(mission_, options, config_.smooth, outputs, progress_);
+  forward_output.close();
+  output.close();
+
+  result_.innovations = solution_.forward.innovations;
+  result_.events.insert(result_.events.end(), solution_.forward.events.begin(), solution_.forward.events.end());
+  count_innovations();
+  result_.compared_with = reference_ ? "reference" : "gap_free_run";
+  if (reference_) {
+    result_.reference =
+        AgainstReference{forward_comparison.summary(), std::nullopt, forward_comparison.errors(), {}, reference_->has_velocity,
+                         reference_->has_attitude};
+    if (config_.smooth) {
+      result_.reference->smoothed = comparison.summary();
+      result_.reference->smoothed_errors = comparison.errors();
+    }
+  }
+  for (std::size_t i = 0; i < gaps.size(); ++i) {
+    result_.outages.push_back({gaps[i], forward_recorders[i].errors(), std::nullopt});
+    if (config_.smooth) result_.outages.back().smoothed = recorders[i].errors();
+  }
+  result_.states = state_tracks(solution_.filter->layout(), result_.start, forward_knots_, solution_.smoothed);
+}
+
+void ProcessRun::count_innovations() {
+  // An error along the axis the filter knows least is refused from sqrt(threshold) of its sigma on.
+  const double probability = mission_.options().gate_probability;
+  const double gate = probability > 0.0 ? std::sqrt(estimate::chi2_upper_quantile(3, probability)) : 0.0;
+  std::vector<double> blind;
+  for (const estimate::InnovationRecord& r : result_.innovations) {
+    if (r.kind != estimate::UpdateKind::kGnssPosition) continue;
+    ++(r.used ? result_.gnss_used : result_.gnss_rejected);
+    if (gate > 0.0) blind.push_back(r.largest_sd * gate);
+  }
+  if (!blind.empty()) {
+    std::nth_element(blind.begin(), blind.begin() + static_cast<std::ptrdiff_t>(blind.size() / 2), blind.end());
+    result_.smallest_refusable_m = blind[blind.size() / 2];
+  }
+  result_.nis = nis_of(result_.innovations);
+}
+
+void ProcessRun::study_sweep() {
+  if (!config_.sweep || !config_.smooth) return;
+  const record::Trajectory& truth = reference_ ? *reference_ : gap_free_;
+  const Eigen::Vector3d arm = reference_ ? config_.reference_lever_arm_b : Eigen::Vector3d::Zero();
+  const auto progress = [this](double fraction) {
+    if (progress_) progress_("studying outages", fraction);
+  };
+  result_.sweep = study::run_outages(mission_.mission(), mission_.model(), mission_.options(), solution_.knots, truth, arm,
+                                     study::outages_of(*config_.sweep, result_.start, result_.end), 60.0, progress);
+}
+
+void ProcessRun::check_lever_arm() {
+  constexpr double kPriorSd = 0.5;  // m: wide against what a tape measure misses
+  if (result_.gnss_used > 10) result_.lever_arm = study::check_lever_arm(mission_, kPriorSd, progress_);
+}
+
+void ProcessRun::separate_forward_and_backward() {
+  std::vector<KnotState> backward;
+  mission_.run_backward(
+      solution_.forward.last, [&](const estimate::FilterState& state) { backward.push_back(knot_state(state)); }, progress_);
+  std::ranges::reverse(backward);
+  result_.separations = separations(forward_knots_, backward);
+}
+
+// Values that the run found go into the resolved file, so that it gives the same numbers again.
+void ProcessRun::note_estimates() const {
+  if (mission_.options().auxiliary.time_offset_sd_s > 0.0)
+    config_.root.at("gnss").note_estimated("time_offset_s", fmt::format("{:.17g}", mission_.mission().time_offset_s));
+  const Eigen::Vector3d& arm = mission_.mission().lever_arm_b;
+  if (mission_.options().auxiliary.lever_arm_sd_m > 0.0)
+    config_.root.at("imu").note_estimated("lever_arm_m", fmt::format("[{:.17g}, {:.17g}, {:.17g}]", arm.x(), arm.y(), arm.z()));
+  if (!result_.noise_fit) return;
+  const estimate::NoiseAdjustment& a = result_.noise_fit->adjustment;
+  const estimate::NoiseFitChoice& choice = *config_.setup.noise_fit;
+  if (choice.imu_white_noise)
+    config_.root.at("imu").note_estimated(
+        "noise", fmt::format("{{gyro_factor: {:.17g}, accel_factor: {:.17g}}}", a.gyro_factor, a.accel_factor));
+  if (choice.gnss_scale)
+    config_.root.at("gnss").note_estimated(
+        "noise",
+        fmt::format("{{scale_horizontal: {:.17g}, scale_vertical: {:.17g}, scale_velocity: {:.17g}, correlated_horizontal_m: "
+                    "{:.17g}, correlated_vertical_m: {:.17g}, correlated_time_s: {:.17g}}}",
+                    a.gnss_scale.horizontal, a.gnss_scale.vertical, a.gnss_scale.velocity, a.correlated_gnss.horizontal_m,
+                    a.correlated_gnss.vertical_m, a.correlated_gnss.time_s));
+}
+
+std::string ProcessRun::write_results() {
+  note_estimates();
+  const std::string resolved = config_.root.resolved_yaml();
+  io::write_text(out_ / "run.resolved.yaml", resolved);
+  io::write_text(out_ / "summary.json", summary_json(result_));
+  const report::Page page = make_page({config_, result_, mission_, curves_, resolved});
+  io::write_text(out_ / "report.json", report::to_json(page));
+  io::write_text(out_ / "report.html", report::render(page));
+  return summary_text(result_);
+}
+
+}  // namespace
+
+void process(const std::filesystem::path& run_yaml, const CommonOptions& options) {
+  ProgressLine line(options.quiet);
+  const study::Progress progress = [&line](const char* what, double fraction) { line.show(what, fraction); };
+
+  const RunConfig config = read_run_config(run_yaml);
+  Recordings recordings = load(config);
+  const std::filesystem::path out = output_folder(run_yaml, options.out);
+  line.clear();
+  print_inspection(recordings, options.quiet);
+
+  ProcessRun run(config, std::move(recordings), out, progress);
+  run.solve_without_outages();
+  run.solve_and_write();
+  run.study_sweep();
+  run.check_lever_arm();
+  run.separate_forward_and_backward();
+  const std::string summary = run.write_results();
+  line.clear();
+  if (!options.quiet) fmt::print("{}report: {}\n", summary, (out / "report.html").string());
+}
+
+}  // namespace coast::cli

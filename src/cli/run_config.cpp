@@ -1,0 +1,203 @@
+#include "run_config.hpp"
+
+#include <algorithm>
+
+#include "coast/geo/units.hpp"
+#include "coast/ins/mounting.hpp"
+#include "coast/io/writers.hpp"
+#include "coast/io/yaml.hpp"
+
+namespace coast::cli {
+
+namespace {
+
+using config::Node;
+
+Eigen::Vector3d degrees(const Eigen::Vector3d& deg) {
+  return geo::kDegree * deg;
+}
+
+Eigen::Vector3d positive3(const Node& node) {
+  const Eigen::Vector3d v = node.vector3();
+  if (!(v.array() > 0.0).all()) throw node.error(node.where(), "three values above zero");
+  return v;
+}
+
+geo::Geodetic geodetic(const Node& node) {
+  const Eigen::Vector3d v = node.vector3();
+  if (std::abs(v.x()) > 90.0) throw node.error("a latitude beyond 90 deg", "[latitude_deg, longitude_deg, height_m]");
+  return {geo::kDegree * v.x(), geo::kDegree * v.y(), v.z()};
+}
+
+GivenStart start_from(const Node& node) {
+  GivenStart start;
+  start.time_s = node.at("time_s").number();
+  start.position = geodetic(node.at("position_deg_m"));
+  start.velocity_n = node.at("velocity_mps").vector3();
+  const Eigen::Vector3d attitude = degrees(node.at("attitude_deg").vector3());
+  start.attitude = {attitude.x(), attitude.y(), attitude.z()};
+  const Node sd = node.at("sd");
+  start.sd_position_n = positive3(sd.at("position_m"));
+  start.sd_velocity_n = positive3(sd.at("velocity_mps"));
+  start.sd_attitude_n = degrees(positive3(sd.at("attitude_deg")));
+  return start;
+}
+
+// `noise: stated | estimated | {the values}`; true: to be estimated.
+bool noise_is_estimated(const Node& parent, const std::function<void(const Node&)>& given) {
+  const auto node = parent.find("noise");
+  if (!node) return parent.choice("noise", {"stated", "estimated"}, 0) == 1;
+  if (node->is_map()) {
+    given(*node);
+    return false;
+  }
+  return parent.choice("noise", {"stated", "estimated"}, 0) == 1;
+}
+
+void read_imu_noise(const Node& imu, study::Setup& setup, estimate::NoiseFitChoice& choice) {
+  choice.imu_white_noise = noise_is_estimated(imu, [&](const Node& given) {
+    estimate::NoiseAdjustment factors;
+    factors.gyro_factor = given.number_within("gyro_factor", 1.0, 1e-3, 1e4);
+    factors.accel_factor = given.number_within("accel_factor", 1.0, 1e-3, 1e4);
+    setup.model = estimate::adjusted(setup.model, factors);
+  });
+}
+
+void read_gnss_noise(const Node& gnss, study::Setup& setup, estimate::NoiseFitChoice& choice) {
+  choice.gnss_scale = noise_is_estimated(gnss, [&](const Node& given) {
+    estimate::GnssScale& scale = setup.filter.gnss_scale;
+    scale.horizontal = given.number_within("scale_horizontal", 1.0, 1e-3, 1e4);
+    scale.vertical = given.number_within("scale_vertical", 1.0, 1e-3, 1e4);
+    scale.velocity = given.number_within("scale_velocity", 1.0, 1e-3, 1e4);
+    estimate::CorrelatedGnss& correlated = setup.filter.auxiliary.correlated_gnss;
+    correlated.horizontal_m = given.number_within("correlated_horizontal_m", 0.0, 0.0, 1e3);
+    correlated.vertical_m = given.number_within("correlated_vertical_m", 0.0, 0.0, 1e3);
+    correlated.time_s = given.number_within("correlated_time_s", 60.0, 1e-2, 1e5);
+  });
+  choice.correlated_gnss = choice.gnss_scale;
+}
+
+void read_vehicle(const Node& root, study::Setup& setup) {
+  const auto vehicle = root.find("vehicle");
+  if (!vehicle) return;
+  const Node map = vehicle->is_map() ? *vehicle : Node();
+  const std::string kind = vehicle->is_map() ? map.at("kind").text() : vehicle->text();
+  if (kind != "car") throw vehicle->error("vehicle " + kind, "car");
+  setup.vehicle_forward = true;
+  std::vector<std::string> updates{"zupt", "nhc"};
+  if (const auto list = map.find("updates")) {
+    updates.clear();
+    for (const Node& item : list->items()) {
+      updates.push_back(item.text());
+      if (updates.back() != "zupt" && updates.back() != "nhc") throw item.error(updates.back(), "zupt or nhc");
+    }
+  }
+  estimate::VehicleConstraints& constraints = setup.filter.vehicle;
+  constraints.interval_s = map.number_within("interval_s", constraints.interval_s, 0.02, 60.0);
+  if (std::ranges::count(updates, "zupt") > 0)
+    constraints.zero_velocity_sd_mps = map.number_within("zupt_sd_mps", 0.02, 1e-4, 1.0);
+  if (std::ranges::count(updates, "nhc") == 0) return;
+  estimate::NonHolonomic nhc;
+  nhc.point_b = map.vector3("nhc_point_m", Eigen::Vector3d::Zero());
+  nhc.sd_lateral_mps = map.number_within("nhc_lateral_sd_mps", 0.1, 1e-4, 10.0);
+  nhc.sd_vertical_mps = map.number_within("nhc_vertical_sd_mps", 0.1, 1e-4, 10.0);
+  nhc.pitch = geo::kDegree * map.number_within("mounting_pitch_deg", 0.0, -45.0, 45.0);
+  nhc.yaw = geo::kDegree * map.number_within("mounting_yaw_deg", 0.0, -180.0, 180.0);
+  constraints.non_holonomic = nhc;
+  setup.filter.auxiliary.mounting_sd = geo::kDegree * map.number_within("mounting_sd_deg", 5.0, 0.0, 45.0);
+  setup.filter.knot_interval_s = std::min(setup.filter.knot_interval_s, constraints.interval_s);
+}
+
+void read_outages(const Node& root, RunConfig& run) {
+  const auto outages = root.find("outages");
+  if (!outages) return;
+  if (outages->is_map()) {
+    run.sweep = sweep_from(*outages);
+    return;
+  }
+  for (const Node& item : outages->items()) {
+    OutageSeconds outage{item.at("start_s").number(), item.at("duration_s").number()};
+    if (!(outage.duration_s > 0.0)) throw item.at("duration_s").error("a duration of zero or less", "seconds above zero");
+    run.outages.push_back(outage);
+  }
+}
+
+void read_output(const Node& root, RunConfig& run) {
+  const auto output = root.find("output");
+  if (!output) return;
+  if (const auto rate = output->find("rate_hz")) run.output.rate_hz = output->number_within("rate_hz", 0.0, 1e-3, 1e5);
+  if (const auto formats = output->find("formats"))
+    for (const Node& item : formats->items()) {
+      const auto& known = io::trajectory_formats();
+      if (std::ranges::find(known, item.text()) == known.end())
+        throw item.error("output format " + item.text(), "one of nav, csv, sbet, pos, kml");
+      run.output.formats.push_back(item.text());
+    }
+  run.output.point_b = output->vector3("point_m", Eigen::Vector3d::Zero());
+}
+
+void read_imu(const Node& imu, RunConfig& run, estimate::NoiseFitChoice& choice) {
+  run.imu = io::ImuFileOptions::from(imu);
+  run.setup.C_s_b = ins::C_s_b(ins::MountingOptions::from(imu));
+  run.setup.model = noise::ImuErrorModel::from(io::load_yaml(imu.at("error_model").path()));
+  run.setup.lever_arm_b = imu.at("lever_arm_m").vector3();
+  run.setup.filter.auxiliary.lever_arm_sd_m = imu.number_within("lever_arm_sd_m", 0.0, 0.0, 100.0);
+  run.setup.high_order_compensation = imu.choice("compensation", {"two_sample", "chebyshev"}, 0) == 1;
+  read_imu_noise(imu, run.setup, choice);
+}
+
+void read_gnss(const Node& gnss, RunConfig& run, estimate::NoiseFitChoice& choice) {
+  run.gnss = io::GnssFileOptions::from(gnss);
+  run.setup.time_offset_s = gnss.number_within("time_offset_s", 0.0, -100.0, 100.0);
+  run.setup.filter.auxiliary.time_offset_sd_s = gnss.number_within("time_offset_sd_s", 0.0, 0.0, 10.0);
+  run.setup.filter.use_gnss_velocity = gnss.flag("use_velocity", true);
+  read_gnss_noise(gnss, run.setup, choice);
+}
+
+}  // namespace
+
+study::OutageSweep sweep_from(const Node& node) {
+  study::OutageSweep sweep;
+  sweep.every_s = node.number_within("every_s", sweep.every_s, 1.0, 1e6);
+  sweep.first_s = node.number_within("first_s", sweep.first_s, 0.0, 1e6);
+  sweep.durations_s = node.at("durations_s").numbers();
+  for (const double duration : sweep.durations_s)
+    if (!(duration > 0.0)) throw node.at("durations_s").error("a duration of zero or less", "seconds above zero");
+  return sweep;
+}
+
+RunConfig read_run_config(const std::filesystem::path& file) {
+  RunConfig run;
+  run.file = file;
+  run.root = io::load_yaml(file);
+  const Node& root = run.root;
+  static_cast<void>(root.text("schema", "coast.run/1"));
+  estimate::NoiseFitChoice choice;
+  read_imu(root.at("imu"), run, choice);
+  read_gnss(root.at("gnss"), run, choice);
+  if (choice.gnss_scale || choice.imu_white_noise) run.setup.noise_fit = choice;
+  if (const auto reference = root.find("reference")) {
+    run.reference = io::ReferenceFileOptions::from(*reference);
+    run.reference_lever_arm_b = reference->vector3("lever_arm_m", Eigen::Vector3d::Zero());
+  }
+  const auto start = root.find("start");
+  if (start && start->is_map())
+    run.start = start_from(*start);
+  else
+    static_cast<void>(root.choice("start", {"auto"}, 0));
+  if (const auto filter = root.find("filter")) {
+    run.setup.filter.gate_probability = filter->number_within("gate_probability", 1e-6, 0.0, 0.5);
+    run.setup.filter.knot_interval_s = filter->number_within("knot_interval_s", 0.5, 0.01, 10.0);
+  }
+  read_vehicle(root, run.setup);
+  read_outages(root, run);
+  const auto smoother = root.find("smoother");
+  if (smoother && smoother->text() == "batch")
+    throw smoother->error("smoother: batch", "rts or none", "The sparse batch smoother does not exist yet.");
+  run.smooth = root.choice("smoother", {"rts", "none"}, 0) == 0;
+  read_output(root, run);
+  root.refuse_unasked();
+  return run;
+}
+
+}  // namespace coast::cli

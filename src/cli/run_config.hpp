@@ -1,0 +1,62 @@
+#pragma once
+// run.yaml, read and checked before any data are.
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "coast/config/node.hpp"
+#include "coast/geo/rotation.hpp"
+#include "coast/io/gnss.hpp"
+#include "coast/io/imu.hpp"
+#include "coast/io/reference.hpp"
+#include "coast/study/mission.hpp"
+#include "coast/study/outage.hpp"
+
+namespace coast::cli {
+
+/// A start given by hand; its week comes from the recordings.
+struct GivenStart {
+  double time_s = 0.0;  ///< seconds of week
+  geo::Geodetic position;
+  Eigen::Vector3d velocity_n;
+  geo::Euler attitude;
+  Eigen::Vector3d sd_position_n;
+  Eigen::Vector3d sd_velocity_n;
+  Eigen::Vector3d sd_attitude_n;
+};
+
+struct OutageSeconds {
+  double start_s = 0.0;  ///< seconds of week
+  double duration_s = 0.0;
+};
+
+struct OutputOptions {
+  std::optional<double> rate_hz;                      ///< absent: IMU epochs
+  std::vector<std::string> formats;                   ///< beyond trajectory.nav, forward.nav and trajectory.csv
+  Eigen::Vector3d point_b = Eigen::Vector3d::Zero();  ///< IMU to the point that the trajectory refers to, m
+};
+
+struct RunConfig {
+  config::Node root;
+  std::filesystem::path file;
+  io::ImuFileOptions imu;
+  io::GnssFileOptions gnss;
+  std::optional<io::ReferenceFileOptions> reference;
+  Eigen::Vector3d reference_lever_arm_b = Eigen::Vector3d::Zero();
+  study::Setup setup;
+  std::optional<GivenStart> start;
+  std::vector<OutageSeconds> outages;
+  std::optional<study::OutageSweep> sweep;
+  bool smooth = true;
+  OutputOptions output;
+};
+
+/// @throws InputError  anything missing, out of range or unknown, with file and line
+[[nodiscard]] RunConfig read_run_config(const std::filesystem::path& file);
+
+/// Keys `every_s`, `first_s`, `durations_s` of a swept study.
+[[nodiscard]] study::OutageSweep sweep_from(const config::Node& node);
+
+}  // namespace coast::cli

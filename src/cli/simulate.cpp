@@ -1,0 +1,72 @@
+#include <fmt/format.h>
+#include <tbb/global_control.h>
+
+#include "coast/io/writers.hpp"
+#include "coast/io/yaml.hpp"
+#include "coast/simulate/scenario.hpp"
+#include "commands.hpp"
+#include "load.hpp"
+
+namespace coast::cli {
+
+namespace {
+
+std::string list(const Eigen::Vector3d& v) {
+  return fmt::format("[{:.17g}, {:.17g}, {:.17g}]", v.x(), v.y(), v.z());
+}
+
+std::string axis_name(const Eigen::Vector3d& row) {
+  Eigen::Index axis = 0;
+  row.cwiseAbs().maxCoeff(&axis);
+  return fmt::format("{}{}", row(axis) < 0.0 ? "-" : "", "xyz"[axis]);
+}
+
+// The run.yaml that processes the recording, beside it.
+std::string run_yaml(const simulate::Scenario& scenario, const simulate::SimulatedMission& mission) {
+  const Eigen::Matrix3d& axes = scenario.mounting.axes;
+  std::string text = fmt::format(
+      "schema: coast.run/1\n"
+      "imu:\n"
+      "  file: imu.csv\n"
+      "  format: csv\n"
+      "  gps_week: {}\n"
+      "  error_model: error_model.yaml\n"
+      "  lever_arm_m: {}\n"
+      "  axes: [{}, {}, {}]\n"
+      "  mounting_deg: {}\n"
+      "gnss: {{file: gnss.pos, format: rtklib-pos, time_offset_s: {:.17g}}}\n"
+      "reference: {{file: truth.nav, format: nav}}\n",
+      scenario.start.week(), list(scenario.gnss.lever_arm_b), axis_name(axes.row(0)), axis_name(axes.row(1)),
+      axis_name(axes.row(2)), list(scenario.mounting.mounting / geo::kDegree), scenario.gnss.time_offset);
+  if (mission.outages.empty()) return text;
+  text += "outages:\n";
+  for (const simulate::StudiedOutage& outage : mission.outages)
+    text += fmt::format("  - {{start_s: {:.9f}, duration_s: {:.17g}}}\n", outage.start.sow(), outage.duration);
+  return text;
+}
+
+}  // namespace
+
+void simulate(const std::filesystem::path& scenario_yaml, std::optional<std::uint64_t> seed, const CommonOptions& options) {
+  coast::simulate::Scenario scenario = coast::simulate::Scenario::from(
+      io::load_yaml(scenario_yaml), [](const std::filesystem::path& file) { return io::load_yaml(file); });
+  if (seed) scenario.seed = *seed;
+  if (!scenario.error_model)
+    throw InputError({scenario_yaml.string(), 0, "a scenario without imu.error_model", "an error model",
+                      "The recording would have no run.yaml that processes it."});
+  const std::filesystem::path out = output_folder(scenario_yaml, options.out);
+  const auto threads = tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism);
+  const coast::simulate::SimulatedMission mission = coast::simulate::simulate(scenario, static_cast<int>(threads));
+  io::write_imu_csv(out / "imu.csv", mission.imu);
+  io::write_gnss_pos(out / "gnss.pos", mission.gnss);
+  const auto truth = io::make_nav_writer(out / "truth.nav");
+  for (const record::NavState& nav : mission.truth.states) truth->write({nav, {}});
+  truth->close();
+  io::write_text(out / "error_model.yaml", scenario.error_model->yaml());
+  io::write_text(out / "run.yaml", run_yaml(scenario, mission));
+  if (!options.quiet)
+    fmt::print("{} IMU samples, {} fixes; process them with\n  coast process {}\n", mission.imu.samples.size(),
+               mission.gnss.fixes.size(), (out / "run.yaml").string());
+}
+
+}  // namespace coast::cli

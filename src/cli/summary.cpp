@@ -1,0 +1,198 @@
+#include "summary.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "coast/geo/units.hpp"
+#include "drift.hpp"
+
+namespace coast::cli {
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+Json array(const Eigen::Vector3d& v) {
+  return Json::array({v.x(), v.y(), v.z()});
+}
+Json degrees(const Eigen::Vector3d& v) {
+  return array(v / geo::kDegree);
+}
+
+Json error_json(const study::ErrorSummary& s) {
+  Json j;
+  j["epochs"] = s.epochs;
+  j["position_rms_m"] = array(s.position_rms_m);
+  j["position_max_m"] = array(s.position_max_m);
+  if (s.velocity_rms_mps) j["velocity_rms_mps"] = array(*s.velocity_rms_mps);
+  if (s.attitude_rms) j["attitude_rms_deg"] = degrees(*s.attitude_rms);
+  return j;
+}
+
+Json outage_errors_json(const study::OutageErrors& e) {
+  Json j;
+  j["max_m"] = array(e.max_m);
+  j["rms_m"] = array(e.rms_m);
+  j["end_m"] = array(e.end_m);
+  j["sigma_end_m"] = array(e.sigma_end_m);
+  j["sigma_max_m"] = array(e.sigma_max_m);
+  j["horizontal_max_m"] = e.horizontal_max_m;
+  if (e.gnss_horizontal_max_m) j["gnss_horizontal_max_m"] = *e.gnss_horizontal_max_m;
+  j["attitude_max_deg"] = degrees(e.attitude_max);
+  if (e.tested > 0) j["share_inside_95"] = static_cast<double>(e.inside_95) / static_cast<double>(e.tested);
+  return j;
+}
+
+Json outage_json(const study::OutageResult& o, const std::string& compared_with) {
+  Json j;
+  j["start_s"] = o.outage.start.sow();
+  j["duration_s"] = o.outage.duration_s;
+  j["compared_with"] = compared_with;
+  j["forward"] = outage_errors_json(o.forward);
+  if (o.smoothed) j["smoothed"] = outage_errors_json(*o.smoothed);
+  return j;
+}
+
+Json events_json(const record::Events& events) {
+  Json list = Json::array();
+  for (const record::Event& event : events) {
+    Json j;
+    j["severity"] = event.severity == record::Event::Severity::kWarning ? "warning" : "info";
+    j["kind"] = event.kind;
+    j["text"] = event.text;
+    if (event.time) j["time_s"] = event.time->sow();
+    j["count"] = event.count;
+    list.push_back(j);
+  }
+  return list;
+}
+
+Json drift_json(const Drift& drift) {
+  return {{"median_m", drift.median}, {"p68_m", drift.p68}, {"p95_m", drift.p95}, {"max_m", drift.max}};
+}
+
+Json sweep_json(const std::vector<study::OutageResult>& sweep, const std::string& compared_with) {
+  Json list = Json::array();
+  for (const DriftRow& row : drift_table(sweep)) {
+    Json j;
+    j["duration_s"] = row.duration_s;
+    j["outages"] = row.outages;
+    j["compared_with"] = compared_with;
+    j["forward_horizontal_max"] = drift_json(row.forward);
+    j["smoothed_horizontal_max"] = drift_json(row.smoothed);
+    if (row.forward_against_gnss) j["forward_horizontal_max_against_gnss"] = drift_json(*row.forward_against_gnss);
+    if (row.smoothed_against_gnss) j["smoothed_horizontal_max_against_gnss"] = drift_json(*row.smoothed_against_gnss);
+    j["smoothed_share_inside_95"] = row.inside_95;
+    list.push_back(j);
+  }
+  return list;
+}
+
+Json noise_json(const estimate::NoiseFit& fit) {
+  Json j;
+  const auto& a = fit.adjustment;
+  j["gnss_scale"] = {
+      {"horizontal", a.gnss_scale.horizontal}, {"vertical", a.gnss_scale.vertical}, {"velocity", a.gnss_scale.velocity}};
+  j["correlated_gnss"] = {{"horizontal_m", a.correlated_gnss.horizontal_m},
+                          {"vertical_m", a.correlated_gnss.vertical_m},
+                          {"time_s", a.correlated_gnss.time_s}};
+  j["gyro_factor"] = a.gyro_factor;
+  j["accel_factor"] = a.accel_factor;
+  j["log_likelihood"] = {fit.log_likelihood_before, fit.log_likelihood_after};
+  return j;
+}
+
+Json separation_json(const std::vector<Separation>& separations) {
+  Eigen::Vector3d position = Eigen::Vector3d::Zero();
+  Eigen::Vector3d attitude = Eigen::Vector3d::Zero();
+  for (const Separation& s : separations) {
+    position += s.position_n.cwiseAbs2();
+    attitude += s.attitude.cwiseAbs2();
+  }
+  const double n = static_cast<double>(separations.size());
+  Json j;
+  j["epochs"] = separations.size();
+  j["position_rms_m"] = array((position / n).cwiseSqrt());
+  j["attitude_rms_arcmin"] = array((attitude / n).cwiseSqrt() / geo::kArcMinute);
+  return j;
+}
+
+}  // namespace
+
+NisSummary nis_of(const std::vector<estimate::InnovationRecord>& innovations) {
+  NisSummary s;
+  double nis = 0.0;
+  double dof = 0.0;
+  std::optional<geo::GpsTime> last;
+  for (const estimate::InnovationRecord& r : innovations) {
+    if (!r.used || (r.kind != estimate::UpdateKind::kGnssPosition && r.kind != estimate::UpdateKind::kGnssVelocity)) continue;
+    if (!last || *last != r.t) ++s.epochs;
+    last = r.t;
+    nis += r.nis;
+    dof += r.dof;
+  }
+  if (s.epochs == 0) return s;
+  s.mean = nis / static_cast<double>(s.epochs);
+  s.expected = dof / static_cast<double>(s.epochs);
+  return s;
+}
+
+std::string summary_json(const ProcessResult& result) {
+  Json j;
+  j["schema"] = "coast.summary/1";
+  j["imu"] = {{"samples", result.imu_samples}, {"rate_hz", result.imu_rate_hz}, {"gaps", result.imu_gaps}};
+  j["gnss"] = {{"epochs", result.gnss_epochs}, {"used", result.gnss_used}, {"rejected", result.gnss_rejected}};
+  if (result.nis.epochs > 0)
+    j["nis"] = {{"mean", result.nis.mean}, {"expected", result.nis.expected}, {"epochs", result.nis.epochs}};
+  j["span"] = {{"week", result.start.week()}, {"start_s", result.start.sow()}, {"end_s", result.end.sow()}};
+  j["alignment"] = result.alignment;
+  if (result.reference) {
+    if (result.reference->smoothed) j["reference"]["smoothed"] = error_json(*result.reference->smoothed);
+    j["reference"]["forward"] = error_json(result.reference->forward);
+  }
+  if (!result.outages.empty())
+    for (const auto& outage : result.outages) j["outages"].push_back(outage_json(outage, result.compared_with));
+  if (!result.sweep.empty()) {
+    j["outage_sweep"] = sweep_json(result.sweep, result.compared_with);
+    for (const auto& outage : result.sweep) j["outages"].push_back(outage_json(outage, result.compared_with));
+  }
+  if (result.noise_fit) j["noise_fit"] = noise_json(*result.noise_fit);
+  if (result.lever_arm)
+    j["lever_arm_misclosure"] = {{"estimated_minus_configured_m", array(result.lever_arm->difference_m)},
+                                 {"sd_m", array(result.lever_arm->sd_m)}};
+  if (!result.separations.empty()) j["forward_backward_separation"] = separation_json(result.separations);
+  for (const StateTrack& track : result.states)
+    if (!track.smoothed.empty())
+      j["states_at_end"][track.name] = {{"value", track.smoothed.back()}, {"sd", track.smoothed_sd.back()}};
+  j["events"] = events_json(result.events);
+  j["files"] = {{"trajectory", "trajectory.nav"},
+                {"forward", "forward.nav"},
+                {"covariance", "trajectory.csv"},
+                {"report", "report.html"},
+                {"resolved", "run.resolved.yaml"}};
+  return j.dump(1) + "\n";
+}
+
+std::string summary_text(const ProcessResult& result) {
+  std::string text = fmt::format("{:.1f} s processed, {} of {} GNSS epochs used, {} refused; NIS {:.2f}, expected {:.2f}\n",
+                                 result.end - result.start, result.gnss_used, result.gnss_epochs, result.gnss_rejected,
+                                 result.nis.mean, result.nis.expected);
+  text += "start: " + result.alignment + "\n";
+  if (result.reference) {
+    const study::ErrorSummary& s = result.reference->smoothed ? *result.reference->smoothed : result.reference->forward;
+    text += fmt::format("against the reference, rms: {:.3f} {:.3f} {:.3f} m N E D\n", s.position_rms_m.x(),
+                        s.position_rms_m.y(), s.position_rms_m.z());
+  }
+  for (const DriftRow& row : drift_table(result.sweep))
+    text += fmt::format("outages of {:g} s ({}): largest horizontal error, median: forward {:.3f} m, smoothed {:.3f} m\n",
+                        row.duration_s, row.outages, row.forward.median, row.smoothed.median);
+  for (const auto& o : result.outages)
+    text += fmt::format("outage at {:.1f} s for {:g} s: largest horizontal error forward {:.3f} m{}\n", o.outage.start.sow(),
+                        o.outage.duration_s, o.forward.horizontal_max_m,
+                        o.smoothed ? fmt::format(", smoothed {:.3f} m", o.smoothed->horizontal_max_m) : "");
+  return text;
+}
+
+}  // namespace coast::cli

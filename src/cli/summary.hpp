@@ -1,0 +1,14 @@
+#pragma once
+
+#include <string>
+
+#include "process_result.hpp"
+
+namespace coast::cli {
+
+/// summary.json by schema coast.summary/1. What is absent is left out.
+[[nodiscard]] std::string summary_json(const ProcessResult& result);
+/// The few lines that end a run on the terminal.
+[[nodiscard]] std::string summary_text(const ProcessResult& result);
+
+}  // namespace coast::cli

@@ -1,0 +1,29 @@
+#pragma once
+
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "coast/io/writers.hpp"
+#include "coast/record/trajectory.hpp"
+#include "run_config.hpp"
+
+namespace coast::cli {
+
+/// Writes a streamed trajectory to several files, at the wanted rate and for the wanted point of the body.
+class TrajectoryOutput {
+ public:
+  explicit TrajectoryOutput(const OutputOptions& options) : options_(options) {}
+  void add_writer(std::unique_ptr<io::TrajectoryWriter> writer) { writers_.push_back(std::move(writer)); }
+  void add(const record::TrajectoryEpoch& epoch);
+  void close();
+
+ private:
+  const OutputOptions& options_;
+  std::vector<std::unique_ptr<io::TrajectoryWriter>> writers_;
+  std::optional<record::NavState> previous_;
+  std::optional<geo::GpsTime> last_written_;
+};
+
+}  // namespace coast::cli

@@ -1,0 +1,65 @@
+#include "coast/estimate/forward_filter.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <stdexcept>
+
+#include "coast/geo/earth.hpp"
+#include "coast/record/error.hpp"
+#include "forward_pass.hpp"
+
+namespace coast::estimate {
+
+ins::RawIncrement increment_from(const record::ImuRecording& imu, std::size_t index, const ins::RawIncrement& remainder,
+                                 geo::GpsTime now) {
+  const record::ImuSample& sample = imu.samples[index];
+  ins::RawIncrement raw = remainder.dt > 0.0 ? remainder : ins::RawIncrement{sample.dt, sample.dtheta, sample.dv};
+  const double span = sample.t - now;
+  const double stretch = span / raw.dt;
+  if (std::abs(span - raw.dt) > kTimeTolerance) raw = {span, stretch * raw.dtheta, stretch * raw.dv};
+  return raw;
+}
+
+ForwardFilter::ForwardFilter(const Mission& mission, const noise::ImuErrorModel& model, const FilterOptions& options)
+    : mission_(mission), options_(options), layout_(model, mission.C_s_b, options.auxiliary) {
+  if (!(options.knot_interval_s > 0.0)) throw std::invalid_argument("FilterOptions::knot_interval_s must be above zero");
+  // The closed form that carries driving noise into the navigation states within an interval wants it short.
+  knot_interval_ = std::min(options.knot_interval_s, std::max(0.2 * layout_.shortest_time(), 2.0 / mission.imu.rate_hz));
+}
+
+FilterState ForwardFilter::initial_state(const record::NavState& nav, const Eigen::Vector3d& sd_position_n,
+                                         const Eigen::Vector3d& sd_velocity_n, const Eigen::Vector3d& sd_attitude_n) const {
+  FilterState state;
+  state.nav = nav;
+  state.x = Eigen::VectorXd::Zero(layout_.size());
+  state.P = layout_.initial_covariance();
+  const Eigen::Matrix3d C_n_e = geo::C_n_e(geo::geodetic_from_ecef(nav.r_eb_e));
+  const auto rotated = [&](const Eigen::Vector3d& sd) {
+    return (C_n_e * sd.cwiseAbs2().asDiagonal() * C_n_e.transpose()).eval();
+  };
+  state.P.block<3, 3>(kPos, kPos) = rotated(sd_position_n);
+  state.P.block<3, 3>(kVel, kVel) = rotated(sd_velocity_n);
+  state.P.block<3, 3>(kPsi, kPsi) = rotated(sd_attitude_n);
+  return state;
+}
+
+FilterResult ForwardFilter::run(const FilterState& start, const FilterOutputs& outputs) const {
+  return run_until(start, mission_.imu.samples.back().t, outputs);
+}
+
+FilterResult ForwardFilter::run_until(const FilterState& start, geo::GpsTime end, const FilterOutputs& outputs) const {
+  ForwardPass pass(mission_, layout_, options_, knot_interval_, outputs);
+  pass.start(start);
+  pass.advance(std::min(end, mission_.imu.samples.back().t));
+  return pass.finish();
+}
+
+FilterResult ForwardFilter::resume(const Knot& knot, geo::GpsTime end, const FilterOutputs& outputs) const {
+  ForwardPass pass(mission_, layout_, options_, knot_interval_, outputs);
+  pass.start(knot);
+  pass.advance(std::min(end, mission_.imu.samples.back().t));
+  return pass.finish();
+}
+
+}  // namespace coast::estimate

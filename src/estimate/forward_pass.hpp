@@ -1,0 +1,76 @@
+#pragma once
+// One run of the forward filter; private to the room.
+
+#include <array>
+#include <vector>
+
+#include "coast/estimate/forward_filter.hpp"
+#include "coast/estimate/transition.hpp"
+
+namespace coast::estimate {
+
+/// Instants closer than this are one: IMU and GNSS tags carry rounding of microseconds at best.
+inline constexpr double kTimeTolerance = 2e-6;
+
+/// Repeats the nominal trajectory from a knot to the next, at `end`: the states at IMU epochs on the way, and the one at `end`.
+[[nodiscard]] record::NavState repeat_nominal(const Mission& mission, const Knot& knot, geo::GpsTime end, Navigator& navigator,
+                                              std::vector<record::NavState>& epochs);
+
+class ForwardPass {
+ public:
+  ForwardPass(const Mission& mission, const StateLayout& layout, const FilterOptions& options, double knot_interval,
+              const FilterOutputs& outputs);
+  void start(const FilterState& state);
+  void start(const Knot& knot);
+  void advance(geo::GpsTime end);
+  [[nodiscard]] FilterResult finish();
+
+ private:
+  void begin(const Navigator::Start& start, const Eigen::MatrixXd& P);
+  void skip_fixes(geo::GpsTime before);
+  [[nodiscard]] geo::GpsTime next_knot_time(geo::GpsTime end) const;
+  [[nodiscard]] geo::GpsTime fix_time(std::size_t index) const;
+  [[nodiscard]] double missing_share(double span) const;
+  void add_gap_noise();
+  void propagate(const ins::RawIncrement& raw);
+  void fold();
+  void close_interval();
+  void knot();
+  void gnss_updates(const record::GnssFix& fix);
+  void vehicle_updates();
+  void try_update(const Linearised& measurement, record::FixQuality quality);
+  [[nodiscard]] bool gate_refuses(const Linearised& measurement, double nis);
+  void admit_doubt(const Eigen::Vector3d& nu);
+  void record_innovation(const Linearised& measurement, const Innovation& innovation, bool used, record::FixQuality quality);
+  void emit_epochs(const record::NavCovariance& at_end);
+  void check_finite() const;
+  [[nodiscard]] UpdateContext context() const;
+
+  const Mission& mission_;
+  const StateLayout& layout_;
+  const FilterOptions& options_;
+  const FilterOutputs& outputs_;
+  double knot_interval_;
+  std::array<double, 4> gate_;  ///< threshold of NIS by dof
+
+  Navigator navigator_;
+  TransitionAccumulator transition_;
+  FilterState state_;                                    ///< valid at knots
+  Eigen::Matrix3d C_n_e_ = Eigen::Matrix3d::Identity();  ///< at the last knot
+  Knot knot_;                                            ///< the last one, waiting for its transition
+  bool have_knot_ = false;
+
+  std::size_t next_sample_ = 0;
+  ins::RawIncrement remainder_;
+  std::size_t next_fix_ = 0;
+  geo::GpsTime last_constraint_;
+  geo::GpsTime first_refused_;
+  enum class GateState { kClosed, kRefusing, kOpen } gate_state_ = GateState::kClosed;
+  double missing_share_ = 0.0;  ///< of the sample at hand
+  double gap_ = 0.0;            ///< s of missing IMU since the last knot
+  std::vector<record::NavState> buffer_;
+  record::NavCovariance cov_at_start_;
+  FilterResult result_;
+};
+
+}  // namespace coast::estimate

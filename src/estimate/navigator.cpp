@@ -1,0 +1,89 @@
+#include "coast/estimate/navigator.hpp"
+
+#include <Eigen/LU>
+
+#include "coast/ins/compensation.hpp"
+
+namespace coast::estimate {
+
+Navigator::Navigator(const StateLayout& layout, ins::IncrementKind kind, double earth_rate)
+    : layout_(layout),
+      kind_(kind),
+      strapdown_(record::NavState{}, earth_rate),
+      x_(Eigen::VectorXd::Zero(layout.size())),
+      blocks_(layout) {
+  refresh_corrections();
+}
+
+void Navigator::set(const Start& start) {
+  previous_ = start.previous;
+  correct(start.nav, start.x);
+  set_time(start.nav.t);
+}
+
+void Navigator::correct(const record::NavState& nav, const Eigen::VectorXd& x) {
+  strapdown_.correct(nav.r_eb_e, nav.v_eb_e, nav.q_b_e);
+  x_ = x;
+  pending_ = 0.0;
+  refresh_corrections();
+}
+
+void Navigator::refresh_corrections() {
+  Eigen::Vector3d gyro_bias = Eigen::Vector3d::Zero(), accel_bias = Eigen::Vector3d::Zero();
+  Eigen::Matrix3d gyro_gain = Eigen::Matrix3d::Identity(), accel_gain = Eigen::Matrix3d::Identity();
+  for (const auto& block : layout_.sensors()) {
+    const double error =
+        block.size == 1 ? block.output(0) * x_(block.offset) : block.output.dot(x_.segment(block.offset, block.size));
+    const bool gyro = block.sensor == noise::Sensor::kGyro;
+    if (block.signal_b)
+      (gyro ? gyro_gain : accel_gain) += error * block.response_b * block.signal_b->transpose();
+    else
+      (gyro ? gyro_bias : accel_bias) += error * block.response_b;
+  }
+  // measured = bias + gain * truth
+  gyro_inverse_ = gyro_gain.inverse();
+  accel_inverse_ = accel_gain.inverse();
+  gyro_offset_ = gyro_inverse_ * gyro_bias;
+  accel_offset_ = accel_inverse_ * accel_bias;
+}
+
+const SampleDynamics& Navigator::propagate(const ins::RawIncrement& raw) {
+  const ins::RawIncrement corrected{raw.dt, gyro_inverse_ * raw.dtheta - raw.dt * gyro_offset_,
+                                    accel_inverse_ * raw.dv - raw.dt * accel_offset_};
+  const ins::BodyIncrement increment =
+      kind_ == ins::IncrementKind::kRaw
+          ? ins::compensate_two_sample(previous_, corrected)
+          : ins::without_bias({raw.dt, raw.dtheta, raw.dv}, (raw.dtheta - corrected.dtheta) / raw.dt,
+                              (raw.dv - corrected.dv) / raw.dt);
+  C_before_ = strapdown_.C_b_e();
+  strapdown_.step(increment);
+  last_.dt = raw.dt;
+  last_.C_b_e = 0.5 * (C_before_ + strapdown_.C_b_e());
+  last_.dv_e = strapdown_.last_dv_e();
+  last_.dtheta_b = corrected.dtheta;
+  last_.dv_b = corrected.dv;
+  previous_ = corrected;
+  pending_ += raw.dt;
+  return last_;
+}
+
+void Navigator::advance_sensor_states() {
+  blocks_.over(pending_).apply(x_.tail(x_.size() - kNav));
+  pending_ = 0.0;
+  refresh_corrections();
+}
+
+Eigen::Vector3d Navigator::omega_eb_b(const ins::RawIncrement& next) const {
+  const Eigen::Vector3d dtheta_next = gyro_inverse_ * next.dtheta - next.dt * gyro_offset_;
+  Eigen::Vector3d omega_ib_b = Eigen::Vector3d::Zero();
+  // The line through the mean rates at both intervals' middles, at the instant between them.
+  if (last_.dt > 0.0 && next.dt > 0.0)
+    omega_ib_b = (last_.dtheta_b * (next.dt / last_.dt) + dtheta_next * (last_.dt / next.dt)) / (last_.dt + next.dt);
+  else if (last_.dt > 0.0)
+    omega_ib_b = last_.dtheta_b / last_.dt;
+  else if (next.dt > 0.0)
+    omega_ib_b = dtheta_next / next.dt;
+  return omega_ib_b - strapdown_.C_b_e().transpose() * Eigen::Vector3d(0.0, 0.0, strapdown_.earth_rate());
+}
+
+}  // namespace coast::estimate

@@ -1,0 +1,156 @@
+#include "coast/estimate/state_layout.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <limits>
+
+#include "coast/noise/gauss_markov.hpp"
+
+namespace coast::estimate {
+
+namespace {
+
+constexpr std::array<char, 3> kAxis{'x', 'y', 'z'};
+
+std::optional<Eigen::Vector3d> signal_axis(noise::Input input, int axis, const Eigen::Matrix3d& C_s_b) {
+  switch (input) {
+    case noise::Input::kOne:
+      return std::nullopt;
+    case noise::Input::kOwnAxis:
+      return C_s_b.col(axis);
+    case noise::Input::kNextAxis:
+      return C_s_b.col((axis + 1) % 3);
+    case noise::Input::kPrevAxis:
+      return C_s_b.col((axis + 2) % 3);
+  }
+  return std::nullopt;
+}
+
+// A process whose transition over a second is 1 is a constant or a walk; else 1/beta follows from the diagonal.
+double correlation_time(const noise::Process& process) {
+  Eigen::MatrixXd Phi = Eigen::MatrixXd::Zero(process.states(), process.states());
+  constexpr double kInterval = 1e-3;
+  process.transition(kInterval, Phi);
+  const double smallest = Phi.diagonal().cwiseAbs().minCoeff();
+  return smallest < 1.0 ? kInterval / (1.0 - smallest) : std::numeric_limits<double>::infinity();
+}
+
+}  // namespace
+
+StateLayout::StateLayout(const noise::ImuErrorModel& model, const Eigen::Matrix3d& C_s_b, const AuxiliaryStates& auxiliary)
+    : shortest_time_(std::numeric_limits<double>::infinity()) {
+  add_sensor(model, noise::Sensor::kGyro, C_s_b);
+  add_sensor(model, noise::Sensor::kAccel, C_s_b);
+  sensor_end_ = size_;
+  if (auxiliary.lever_arm_sd_m > 0.0) lever_arm_ = add_auxiliary("lever_arm", auxiliary.lever_arm_sd_m, 0.0, 3);
+  if (auxiliary.time_offset_sd_s > 0.0) time_offset_ = add_auxiliary("gnss_time_offset", auxiliary.time_offset_sd_s, 0.0, 1);
+  if (auxiliary.mounting_sd > 0.0) mounting_ = add_auxiliary("vehicle_mounting", auxiliary.mounting_sd, 0.0, 2);
+  const CorrelatedGnss& gnss = auxiliary.correlated_gnss;
+  if (gnss.horizontal_m > 0.0 || gnss.vertical_m > 0.0) {
+    gnss_error_ = add_auxiliary("gnss_error_horizontal", gnss.horizontal_m, 1.0 / gnss.time_s, 2);
+    add_auxiliary("gnss_error_vertical", gnss.vertical_m, 1.0 / gnss.time_s, 1);
+  }
+}
+
+void StateLayout::add_sensor(const noise::ImuErrorModel& model, noise::Sensor sensor, const Eigen::Matrix3d& C_s_b) {
+  const bool gyro = sensor == noise::Sensor::kGyro;
+  Eigen::Vector3d density_s;
+  for (int axis = 0; axis < 3; ++axis) {
+    density_s(axis) = model.white_density(sensor, axis).value;
+    for (const noise::ProcessPtr& process : model.axes(sensor)[static_cast<std::size_t>(axis)]) {
+      if (process->states() == 0) continue;
+      SensorBlock block;
+      block.process = process;
+      block.offset = size_;
+      block.size = process->states();
+      block.name = fmt::format("{}_{} {}", gyro ? "gyro" : "accel", kAxis[static_cast<std::size_t>(axis)], process->name());
+      block.output = Eigen::RowVectorXd::Zero(block.size);
+      process->output(block.output);
+      block.sensor = sensor;
+      block.response_b = C_s_b.col(axis);
+      block.signal_b = signal_axis(process->input(), axis, C_s_b);
+      size_ += block.size;
+      shortest_time_ = std::min(shortest_time_, correlation_time(*process));
+      sensors_.push_back(std::move(block));
+    }
+  }
+  (gyro ? gyro_density_b_ : accel_density_b_) = C_s_b * density_s.asDiagonal() * C_s_b.transpose();
+}
+
+int StateLayout::add_auxiliary(const std::string& name, double sigma, double beta, int count) {
+  const int first = size_;
+  for (int i = 0; i < count; ++i) {
+    Block block;
+    block.process = noise::make_gauss_markov({.name = "auxiliary", .sigma = sigma, .beta = beta, .unit = ""});
+    block.offset = size_++;
+    block.size = 1;
+    block.output = Eigen::RowVectorXd::Ones(1);
+    block.name = count > 1 ? fmt::format("{}_{}", name, i) : name;
+    auxiliaries_.push_back(std::move(block));
+  }
+  if (beta > 0.0) shortest_time_ = std::min(shortest_time_, 1.0 / beta);
+  return first;
+}
+
+Eigen::MatrixXd StateLayout::initial_covariance() const {
+  Eigen::MatrixXd P = Eigen::MatrixXd::Zero(size_, size_);
+  for_each_block([&](const Block& b) { b.process->initial_covariance(P.block(b.offset, b.offset, b.size, b.size)); });
+  return P;
+}
+
+BlockTransitions::BlockTransitions(const StateLayout& layout)
+    : layout_(layout), diagonal_(Eigen::VectorXd::Ones(layout.size() - kNav)) {
+  int widest = 1;
+  layout.for_each_block([&](const StateLayout::Block& b) {
+    if (b.size > 1) dense_.push_back({b.offset - kNav, Eigen::MatrixXd::Zero(b.size, b.size)});
+    widest = std::max(widest, b.size);
+  });
+  Q_d_ = Eigen::MatrixXd::Zero(diagonal_.size(), widest);
+}
+
+const BlockTransitions& BlockTransitions::over(double dt) {
+  if (std::abs(dt - dt_) < 1e-9) return *this;  // time tags are rounded to a nanosecond
+  dt_ = dt;
+  auto dense = dense_.begin();
+  layout_.for_each_block([&](const StateLayout::Block& b) {
+    const int row = b.offset - kNav;
+    if (b.size > 1)
+      b.process->transition(dt, (dense++)->Phi);
+    else
+      b.process->transition(dt, diagonal_.segment<1>(row));
+    b.process->driving_noise(dt, Q_d_.block(row, 0, b.size, b.size));
+  });
+  return *this;
+}
+
+void BlockTransitions::apply(Eigen::Ref<Eigen::MatrixXd> M) const {
+  M.array().colwise() *= diagonal_.array();
+  for (const Dense& d : dense_) M.middleRows(d.row, d.Phi.rows()) = (d.Phi * M.middleRows(d.row, d.Phi.rows())).eval();
+}
+
+void BlockTransitions::apply_transposed(Eigen::Ref<Eigen::MatrixXd> M) const {
+  M.array().colwise() *= diagonal_.array();
+  for (const Dense& d : dense_)
+    M.middleRows(d.row, d.Phi.rows()) = (d.Phi.transpose() * M.middleRows(d.row, d.Phi.rows())).eval();
+}
+
+void BlockTransitions::apply_to_row(Eigen::Ref<Eigen::RowVectorXd> row) const {
+  row.array() *= diagonal_.head(row.size()).transpose().array();
+  for (const Dense& d : dense_)
+    if (d.row < row.size()) row.segment(d.row, d.Phi.rows()) = (row.segment(d.row, d.Phi.rows()) * d.Phi).eval();
+}
+
+void BlockTransitions::propagate(Eigen::Ref<Eigen::MatrixXd> P) const {
+  P.array().colwise() *= diagonal_.array();
+  P.array().rowwise() *= diagonal_.transpose().array();
+  for (const Dense& d : dense_) {
+    const auto size = d.Phi.rows();
+    P.middleRows(d.row, size) = (d.Phi * P.middleRows(d.row, size)).eval();
+    P.middleCols(d.row, size) = (P.middleCols(d.row, size) * d.Phi.transpose()).eval();
+  }
+  layout_.for_each_block(
+      [&](const StateLayout::Block& b) { P.block(b.offset - kNav, b.offset - kNav, b.size, b.size) += driving_noise(b); });
+}
+
+}  // namespace coast::estimate

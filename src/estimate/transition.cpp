@@ -1,0 +1,217 @@
+#include "coast/estimate/transition.hpp"
+
+#include "coast/geo/rotation.hpp"
+
+namespace coast::estimate {
+
+namespace {
+
+// The response of navigation row i to a constant sensor error grows like elapsed^power.
+int response_power(noise::Sensor sensor, int row) {
+  const int gyro = row < kVel ? 3 : (row < kPsi ? 2 : 1);
+  return sensor == noise::Sensor::kGyro ? gyro : std::max(gyro - 1, 0);
+}
+
+}  // namespace
+
+TransitionAccumulator::TransitionAccumulator(const StateLayout& layout, double earth_rate)
+    : layout_(layout),
+      earth_rate_(earth_rate),
+      Phi_n_(kNav, layout.sensor_end()),
+      output_(layout.sensor_end() - kNav),
+      middle_(output_),
+      effect_(3, output_.size()),
+      over_half_fold_(layout),
+      over_interval_(layout) {
+  for (const auto& block : layout.sensors()) {
+    multiplicative_ = multiplicative_ || block.signal_b.has_value();
+    if (block.sensor == noise::Sensor::kGyro) gyro_states_ += block.size;
+  }
+  reset();
+}
+
+void TransitionAccumulator::reset() {
+  Phi_n_.setZero();
+  Phi_n_.leftCols<kNav>().setIdentity();
+  Q_n_.setZero();
+  for (const auto& block : layout_.sensors()) output_.segment(block.offset - kNav, block.size) = block.output;
+  elapsed_ = 0.0;
+  clear_pending();
+}
+
+void TransitionAccumulator::clear_pending() {
+  pending_ = 0.0;
+  sum_f_.setZero();
+  double_f_.setZero();
+  sum_C_.setZero();
+  if (!multiplicative_) return;
+  for (std::size_t k = 0; k < 3; ++k) {
+    sum_C_dtheta_[k].setZero();
+    sum_C_dv_[k].setZero();
+  }
+}
+
+void TransitionAccumulator::add(const SampleDynamics& s) {
+  double_f_ += s.dt * (sum_f_ + 0.5 * s.dv_e);
+  sum_f_ += s.dv_e;
+  sum_C_ += s.dt * s.C_b_e;
+  pending_ += s.dt;
+  if (!multiplicative_) return;
+  for (int k = 0; k < 3; ++k) {
+    sum_C_dtheta_[static_cast<std::size_t>(k)] += s.dtheta_b(k) * s.C_b_e;
+    sum_C_dv_[static_cast<std::size_t>(k)] += s.dv_b(k) * s.C_b_e;
+  }
+}
+
+// Multiplies rows (9 x any) from the left with the transition over the pending interval.
+template <typename Rows>
+void TransitionAccumulator::advance(Rows& rows, const Eigen::Matrix3d& G) const {
+  const double h = pending_;
+  const double wh = earth_rate_ * h;
+  auto r = rows.template middleRows<3>(kPos);
+  auto v = rows.template middleRows<3>(kVel);
+  auto psi = rows.template middleRows<3>(kPsi);
+
+  const auto gravity_kick = [&](double dt) {
+    for (int i = 0; i < 3; ++i) v.row(i) += (dt * G(i, 0)) * r.row(0) + (dt * G(i, 1)) * r.row(1) + (dt * G(i, 2)) * r.row(2);
+  };
+  // Earth rotation; taking the new first component for the second costs (angle)^2, 1e-11 a fold, and needs no temporary.
+  const auto turn = [](auto block, double angle) {
+    block.row(0) += angle * block.row(1);
+    block.row(1) -= angle * block.row(0);
+  };
+  const auto minus_cross_psi = [&](auto block, const Eigen::Vector3d& a) {  // block -= [a x] psi
+    block.row(0) += a.z() * psi.row(1) - a.y() * psi.row(2);
+    block.row(1) += a.x() * psi.row(2) - a.z() * psi.row(0);
+    block.row(2) += a.y() * psi.row(0) - a.x() * psi.row(1);
+  };
+
+  gravity_kick(0.5 * h);
+  r += h * v;
+  minus_cross_psi(r, double_f_);
+  turn(v, 2.0 * wh);
+  turn(psi, 0.5 * wh);
+  minus_cross_psi(v, sum_f_);  // psi at mid-interval
+  turn(psi, 0.5 * wh);
+  gravity_kick(0.5 * h);
+}
+
+void TransitionAccumulator::add_sensor_columns() {
+  const double h = pending_;
+  over_half_fold_.over(0.5 * h);
+  middle_ = output_;
+  over_half_fold_.apply_to_row(middle_);
+  output_ = middle_;
+  over_half_fold_.apply_to_row(output_);
+  for (const auto& block : layout_.sensors()) {
+    const bool gyro = block.sensor == noise::Sensor::kGyro;
+    Eigen::Vector3d column;  // integral of C times the sensor error per unit of the process's output
+    if (block.signal_b) {
+      const auto& sums = gyro ? sum_C_dtheta_ : sum_C_dv_;
+      const Eigen::Vector3d& s = *block.signal_b;
+      column.noalias() =
+          s.x() * (sums[0] * block.response_b) + s.y() * (sums[1] * block.response_b) + s.z() * (sums[2] * block.response_b);
+    } else {
+      column.noalias() = sum_C_ * block.response_b;
+    }
+    for (int j = block.offset - kNav; j < block.offset - kNav + block.size; ++j) effect_.col(j) = middle_(j) * column;
+  }
+  // Gyro: psi takes the effect, velocity half the cross product with it, position a sixth; accelerometer: velocity, half.
+  const auto gyro = [this](auto&& rows) { return rows.middleCols(kNav, gyro_states_); };
+  const auto accel = [this](auto&& rows) { return rows.rightCols(output_.size() - gyro_states_); };
+  const auto effect_g = effect_.leftCols(gyro_states_);
+  const auto effect_a = effect_.rightCols(output_.size() - gyro_states_);
+  const auto add_tilt = [&](int first, double factor) {
+    const Eigen::Vector3d f = factor * sum_f_;
+    gyro(Phi_n_.row(first)) += f.y() * effect_g.row(2) - f.z() * effect_g.row(1);
+    gyro(Phi_n_.row(first + 1)) += f.z() * effect_g.row(0) - f.x() * effect_g.row(2);
+    gyro(Phi_n_.row(first + 2)) += f.x() * effect_g.row(1) - f.y() * effect_g.row(0);
+  };
+  gyro(Phi_n_.middleRows<3>(kPsi)) -= effect_g;
+  add_tilt(kVel, 0.5);
+  add_tilt(kPos, h / 6.0);
+  accel(Phi_n_.middleRows<3>(kVel)) -= effect_a;
+  accel(Phi_n_.middleRows<3>(kPos)) -= (0.5 * h) * effect_a;
+}
+
+void TransitionAccumulator::add_white_noise() {
+  const double h = pending_;
+  const Eigen::Matrix3d C = sum_C_ / h;
+  const Eigen::Matrix3d q_a = h * (C * layout_.accel_density_b() * C.transpose());
+  const Eigen::Matrix3d q_g = h * (C * layout_.gyro_density_b() * C.transpose());
+  const Eigen::Matrix3d A = geo::skew(sum_f_);
+  const Eigen::Matrix3d v_psi = -0.5 * (A * q_g);
+  Q_n_.block<3, 3>(kPos, kPos) += (h * h / 3.0) * q_a;
+  Q_n_.block<3, 3>(kPos, kVel) += (h / 2.0) * q_a;
+  Q_n_.block<3, 3>(kVel, kPos) += (h / 2.0) * q_a;
+  Q_n_.block<3, 3>(kVel, kVel) += q_a + (A * q_g * A.transpose()) / 3.0;
+  Q_n_.block<3, 3>(kVel, kPsi) += v_psi;
+  Q_n_.block<3, 3>(kPsi, kVel) += v_psi.transpose();
+  Q_n_.block<3, 3>(kPsi, kPsi) += q_g;
+}
+
+void TransitionAccumulator::fold(const Eigen::Matrix3d& gravity_gradient) {
+  if (!(pending_ > 0.0)) return;
+  advance(Phi_n_, gravity_gradient);
+  add_sensor_columns();
+  advance(Q_n_, gravity_gradient);
+  Q_n_.transposeInPlace();
+  advance(Q_n_, gravity_gradient);
+  add_white_noise();
+  elapsed_ += pending_;
+  clear_pending();
+}
+
+void TransitionAccumulator::propagate_covariance(Eigen::MatrixXd& P) {
+  const auto rest = P.rows() - kNav;
+  over_interval_.over(elapsed_);
+  NavRows T(kNav, P.cols());
+  T.topRows<kPsi>().noalias() = Phi_n_.topRows<kPsi>() * P.topRows(Phi_n_.cols());
+  // Nothing but attitude and gyro states acts on the attitude.
+  T.bottomRows<3>().noalias() = Phi_n_.block<3, 3>(kPsi, kPsi) * P.middleRows<3>(kPsi);
+  T.bottomRows<3>().noalias() += Phi_n_.block(kPsi, kNav, 3, gyro_states_) * P.middleRows(kNav, gyro_states_);
+  P.topLeftCorner<kNav, kNav>().noalias() = T.leftCols(Phi_n_.cols()) * Phi_n_.transpose();
+  P.topLeftCorner<kNav, kNav>() += Q_n_;
+  over_interval_.propagate(P.bottomRightCorner(rest, rest));
+  P.bottomLeftCorner(rest, kNav) = T.rightCols(rest).transpose();
+  over_interval_.apply(P.bottomLeftCorner(rest, kNav));
+  P.topRightCorner(kNav, rest) = P.bottomLeftCorner(rest, kNav).transpose();
+  add_driven_covariance(P);
+}
+
+// Driving noise of sensor states that is uniform over the interval, seen by responses that grow like powers of time:
+// integrals of (t/T)^p and (t/T)^(p+q) over the interval.
+void TransitionAccumulator::add_driven_covariance(Eigen::MatrixXd& P) const {
+  const auto shares = [](noise::Sensor sensor) {
+    Eigen::Matrix<double, kNav, 1> cross;
+    NavCov both;
+    for (int i = 0; i < kNav; ++i) {
+      cross(i) = 1.0 / (response_power(sensor, i) + 1.0);
+      for (int j = 0; j < kNav; ++j) both(i, j) = 1.0 / (response_power(sensor, i) + response_power(sensor, j) + 1.0);
+    }
+    return std::pair(cross, both);
+  };
+  static const auto gyro_shares = shares(noise::Sensor::kGyro);
+  static const auto accel_shares = shares(noise::Sensor::kAccel);
+  NavCov driven_g = NavCov::Zero(), driven_a = NavCov::Zero();
+  for (const auto& block : layout_.sensors()) {
+    const auto Q_d = over_interval_.driving_noise(block);
+    if (Q_d.isZero(0.0)) continue;
+    const bool gyro = block.sensor == noise::Sensor::kGyro;
+    for (int a = 0; a < block.size; ++a) {
+      const Eigen::Matrix<double, kNav, 1> response = Phi_n_.col(block.offset + a);
+      for (int b = 0; b < block.size; ++b) {
+        const double q = Q_d(a, b);
+        const int c = block.offset + b;
+        const Eigen::Matrix<double, kNav, 1> cross = q * response.cwiseProduct(gyro ? gyro_shares.first : accel_shares.first);
+        P.col(c).head<kNav>() += cross;
+        P.row(c).head<kNav>() += cross.transpose();
+        const Eigen::Matrix<double, kNav, 1> other = q * Phi_n_.col(c);
+        (gyro ? driven_g : driven_a).noalias() += response * other.transpose();
+      }
+    }
+  }
+  P.topLeftCorner<kNav, kNav>() += driven_g.cwiseProduct(gyro_shares.second) + driven_a.cwiseProduct(accel_shares.second);
+}
+
+}  // namespace coast::estimate

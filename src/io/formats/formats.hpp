@@ -1,0 +1,19 @@
+#pragma once
+// One function per format file in this folder; src/io/registry.cpp lists them.
+
+#include "coast/io/registry.hpp"
+
+namespace coast::io {
+
+[[nodiscard]] Format waypoint_imr_format();
+[[nodiscard]] Format sbet_format();
+[[nodiscard]] Format rtklib_pos_format();
+[[nodiscard]] Format nav_format();
+[[nodiscard]] Format kf_gins_format();
+[[nodiscard]] Format csv_format();
+[[nodiscard]] Format binary_format();
+
+/// The head as lines without comments, split at white space, at most `most` rows; empty where a field is no number.
+[[nodiscard]] std::vector<std::vector<double>> numeric_rows(const FileHead& head, std::size_t most);
+
+}  // namespace coast::io

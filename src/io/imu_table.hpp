@@ -1,0 +1,13 @@
+#pragma once
+
+#include <optional>
+
+#include "coast/io/imu.hpp"
+
+namespace coast::io {
+
+/// Reads a text table with the columns that the options name (all of them given).
+[[nodiscard]] record::ImuRecording read_imu_table(TableReader& table, const ImuFileOptions& options,
+                                                  std::optional<geo::GpsTime> near);
+
+}  // namespace coast::io

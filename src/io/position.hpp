@@ -1,0 +1,31 @@
+#pragma once
+// Positions of a table, in whatever frame it has them, to ECEF.
+
+#include <Eigen/Core>
+#include <optional>
+
+#include "coast/io/gnss.hpp"
+
+namespace coast::io {
+
+/// Converts the three position columns of a row.
+class PositionConverter {
+ public:
+  /// @throws InputError  the options lack what the frame needs (zone, origin)
+  PositionConverter(const PositionOptions& options, const TableReader& table);
+
+  /// @throws InputError  outside its range, or impossibly far from the Earth's surface; with the line
+  [[nodiscard]] Eigen::Vector3d to_ecef(double a, double b, double c) const;
+  /// The warning that heights stay above mean sea level, if so.
+  [[nodiscard]] record::Events events() const;
+
+ private:
+  [[nodiscard]] double ellipsoidal(double height) const;
+  [[nodiscard]] Eigen::Vector3d from_geodetic(double latitude_deg, double longitude_deg, double height) const;
+
+  const TableReader& table_;
+  PositionOptions options_;
+  std::optional<geo::LocalFrame> local_;
+};
+
+}  // namespace coast::io

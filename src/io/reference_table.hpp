@@ -1,0 +1,13 @@
+#pragma once
+
+#include <optional>
+
+#include "coast/io/reference.hpp"
+
+namespace coast::io {
+
+/// Reads a text table with the columns that the options name (position given).
+[[nodiscard]] record::Trajectory read_reference_table(TableReader& table, const ReferenceFileOptions& options,
+                                                      std::optional<geo::GpsTime> near);
+
+}  // namespace coast::io

@@ -1,0 +1,38 @@
+#pragma once
+// Chooses the format of a file: by name, or by content.
+
+#include <fmt/format.h>
+
+#include <filesystem>
+
+#include "coast/config/node.hpp"
+#include "coast/io/input.hpp"
+#include "coast/io/registry.hpp"
+#include "coast/record/error.hpp"
+
+namespace coast::io {
+
+/// @param reader the member of Format that must be set  @param what "an IMU", for messages
+template <class Reader>
+const Format& format_for(const std::filesystem::path& file, const std::string& name, Reader Format::*reader,
+                         std::string_view what) {
+  std::vector<std::string> names;
+  for (const Format& f : formats())
+    if (f.*reader) names.emplace_back(f.name);
+  if (name != "auto") {
+    for (const Format& f : formats())
+      if (f.name == name && f.*reader) return f;
+    const std::string near = config::nearest(name, names);
+    throw InputError({file.string(), 0, fmt::format("format \"{}\" for {} file", name, what),
+                      fmt::format("auto, {}", fmt::join(names, ", ")),
+                      near.empty() ? "" : fmt::format("Do you mean {}?", near)});
+  }
+  FileHead head{file.string(), read_head(file, 4096)};
+  if (head.path.size() > 3 && head.path.ends_with(".gz")) head.path.resize(head.path.size() - 3);
+  for (const Format& f : formats())
+    if (f.*reader && f.sniff && f.sniff(head)) return f;
+  throw InputError({file.string(), 0, fmt::format("not recognised as {} file", what),
+                    fmt::format("one of: {}", fmt::join(names, ", ")), "Name the format with `format:`."});
+}
+
+}  // namespace coast::io

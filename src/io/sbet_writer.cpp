@@ -1,0 +1,82 @@
+// SBET with SMRMSG. The body's specific force and rate are not part of a trajectory epoch; they are written as zero.
+
+#include <array>
+#include <cmath>
+
+#include "binary.hpp"
+#include "coast/geo/rotation.hpp"
+#include "coast/geo/units.hpp"
+#include "coast/io/writers.hpp"
+
+namespace coast::io {
+
+namespace {
+
+constexpr std::size_t kBlock = std::size_t{1} << 16;
+
+/// Records of doubles, collected into blocks.
+class RecordFile {
+ public:
+  explicit RecordFile(const std::filesystem::path& path) : file_(path) {}
+  void put(double value) { append_number(bytes_, value); }
+  void end_record() {
+    if (bytes_.size() >= kBlock) flush();
+  }
+  void flush() {
+    file_.write(bytes_);
+    bytes_.clear();
+  }
+  void commit() {
+    flush();
+    file_.commit();
+  }
+
+ private:
+  AtomicFile file_;
+  std::string bytes_;
+};
+
+class SbetWriter final : public TrajectoryWriter {
+ public:
+  SbetWriter(const std::filesystem::path& sbet, const std::filesystem::path& smrmsg) : sbet_(sbet), smrmsg_(smrmsg) {}
+
+  void write(const record::TrajectoryEpoch& epoch) override {
+    const geo::Geodetic p = geo::geodetic_from_ecef(epoch.nav.r_eb_e);
+    const Eigen::Matrix3d C_e_n = geo::C_n_e(p).transpose();
+    const Eigen::Vector3d v_eb_n = C_e_n * epoch.nav.v_eb_e;
+    const geo::Euler attitude = geo::euler_from_dcm(C_e_n * epoch.nav.q_b_e.toRotationMatrix());
+    const double t = epoch.nav.t.sow();
+    for (const double value : {t, p.latitude, p.longitude, p.height, v_eb_n.x(), v_eb_n.y(), v_eb_n.z(), attitude.roll,
+                               attitude.pitch, attitude.yaw})
+      sbet_.put(value);
+    for (int i = 0; i < 7; ++i) sbet_.put(0.0);  // wander angle, specific force, angular rate
+    sbet_.end_record();
+    write_uncertainty(t, epoch.cov, geo::euler_jacobian(attitude));
+  }
+  void close() override {
+    sbet_.commit();
+    smrmsg_.commit();
+  }
+
+ private:
+  /// time; N, E, D position [m]; N, E, D velocity [m/s]; roll, pitch, heading [arcmin]: one sigma.
+  void write_uncertainty(double t, const record::NavCovariance& cov, const Eigen::Matrix3d& J) {
+    const auto sd = [](const Eigen::Matrix3d& c) { return Eigen::Vector3d(c.diagonal().cwiseMax(0.0).cwiseSqrt()); };
+    smrmsg_.put(t);
+    for (const double s : sd(cov.position)) smrmsg_.put(s);
+    for (const double s : sd(cov.velocity)) smrmsg_.put(s);
+    for (const double s : sd(J * cov.attitude * J.transpose())) smrmsg_.put(s / geo::kArcMinute);
+    smrmsg_.end_record();
+  }
+
+  RecordFile sbet_;
+  RecordFile smrmsg_;
+};
+
+}  // namespace
+
+std::unique_ptr<TrajectoryWriter> make_sbet_writer(const std::filesystem::path& sbet, const std::filesystem::path& smrmsg) {
+  return std::make_unique<SbetWriter>(sbet, smrmsg);
+}
+
+}  // namespace coast::io

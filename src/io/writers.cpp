@@ -1,0 +1,291 @@
+#include "coast/io/writers.hpp"
+
+#include <fmt/format.h>
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+
+#include "coast/geo/rotation.hpp"
+#include "coast/geo/units.hpp"
+#include "text_buffer.hpp"
+
+namespace coast::io {
+
+namespace {
+
+/// Position, velocity and attitude as files show them.
+struct LocalState {
+  geo::Geodetic p;
+  Eigen::Vector3d v_eb_n;
+  geo::Euler attitude;
+};
+
+LocalState local_state(const record::NavState& nav) {
+  LocalState s;
+  s.p = geo::geodetic_from_ecef(nav.r_eb_e);
+  const Eigen::Matrix3d C_e_n = geo::C_n_e(s.p).transpose();
+  s.v_eb_n = C_e_n * nav.v_eb_e;
+  s.attitude = geo::euler_from_dcm(C_e_n * nav.q_b_e.toRotationMatrix());
+  return s;
+}
+
+class NavWriter final : public TrajectoryWriter {
+ public:
+  explicit NavWriter(const std::filesystem::path& path) : file_(path), text_(file_) {}
+
+  void write(const record::TrajectoryEpoch& epoch) override {
+    const LocalState s = local_state(epoch.nav);
+    text_.put_integer(epoch.nav.t.week(), 4);
+    text_.put(' ');
+    text_.put_fixed(epoch.nav.t.sow(), 9, 16);
+    text_.put(' ');
+    text_.put_fixed(s.p.latitude / geo::kDegree, 11, 15);
+    text_.put(' ');
+    text_.put_fixed(s.p.longitude / geo::kDegree, 11, 16);
+    text_.put(' ');
+    text_.put_fixed(s.p.height, 5, 11);
+    for (const double v : s.v_eb_n) {
+      text_.put(' ');
+      text_.put_fixed(v, 6, 11);
+    }
+    for (const double angle : {s.attitude.roll, s.attitude.pitch, s.attitude.yaw}) {
+      text_.put(' ');
+      text_.put_fixed(angle / geo::kDegree, 9, 14);
+    }
+    text_.end_line();
+  }
+  void close() override {
+    text_.flush();
+    file_.commit();
+  }
+
+ private:
+  AtomicFile file_;
+  TextBuffer text_;
+};
+
+constexpr std::string_view kCsvHeader =
+    "gps_week,sow_s,lat_deg,lon_deg,height_m,vn_mps,ve_mps,vd_mps,roll_deg,pitch_deg,yaw_deg,"
+    "sdn_m,sde_m,sdd_m,corr_ne,corr_nd,corr_ed,"
+    "sdvn_mps,sdve_mps,sdvd_mps,corr_vn_ve,corr_vn_vd,corr_ve_vd,"
+    "sd_roll_deg,sd_pitch_deg,sd_yaw_deg,corr_roll_pitch,corr_roll_yaw,corr_pitch_yaw";
+
+class CsvWriter final : public TrajectoryWriter {
+ public:
+  explicit CsvWriter(const std::filesystem::path& path) : file_(path), text_(file_) {
+    text_.put(kCsvHeader);
+    text_.end_line();
+  }
+
+  void write(const record::TrajectoryEpoch& epoch) override {
+    const LocalState s = local_state(epoch.nav);
+    text_.put_integer(epoch.nav.t.week());
+    comma_fixed(epoch.nav.t.sow(), 9);
+    comma_fixed(s.p.latitude / geo::kDegree, 11);
+    comma_fixed(s.p.longitude / geo::kDegree, 11);
+    comma_fixed(s.p.height, 5);
+    for (const double v : s.v_eb_n) comma_fixed(v, 6);
+    for (const double angle : {s.attitude.roll, s.attitude.pitch, s.attitude.yaw}) comma_fixed(angle / geo::kDegree, 9);
+    put_covariance(epoch.cov.position, 1.0, 6);
+    put_covariance(epoch.cov.velocity, 1.0, 7);
+    const Eigen::Matrix3d J = geo::euler_jacobian(s.attitude);
+    put_covariance(J * epoch.cov.attitude * J.transpose(), 1.0 / geo::kDegree, 8);
+    text_.end_line();
+  }
+  void close() override {
+    text_.flush();
+    file_.commit();
+  }
+
+ private:
+  void comma_fixed(double value, int decimals) {
+    text_.put(',');
+    text_.put_fixed(value, decimals);
+  }
+  void put_covariance(const Eigen::Matrix3d& cov, double unit, int decimals) {
+    const Eigen::Vector3d sd = cov.diagonal().cwiseMax(0.0).cwiseSqrt();
+    for (const double s : sd) comma_fixed(s * unit, decimals);
+    for (const auto& [i, j] : {std::pair{0, 1}, {0, 2}, {1, 2}}) {
+      const double product = sd[i] * sd[j];
+      comma_fixed(product > 0.0 ? cov(i, j) / product : 0.0, 6);
+    }
+  }
+
+  AtomicFile file_;
+  TextBuffer text_;
+};
+
+/// "2025/07/08 19:34:18.499", rounded to a millisecond without ever reaching second 60.
+void put_calendar(TextBuffer& text, geo::GpsTime t) {
+  constexpr std::int64_t kMillisecond = 1'000'000;
+  const geo::GpsTime rounded =
+      geo::GpsTime::from_nanoseconds((t.nanoseconds() + kMillisecond / 2) / kMillisecond * kMillisecond);
+  const geo::Calendar c = rounded.calendar();
+  text.put_integer(c.year, 4, '0');
+  for (const int part : {c.month, c.day}) {
+    text.put('/');
+    text.put_integer(part, 2, '0');
+  }
+  text.put(' ');
+  text.put_integer(c.hour, 2, '0');
+  text.put(':');
+  text.put_integer(c.minute, 2, '0');
+  text.put(c.second < 9.9995 ? ":0" : ":");
+  text.put_fixed(c.second, 3);
+}
+
+/// sdn sde sdu sdne sdeu sdun of a covariance in N, E, D: standard deviations and signed roots.
+void put_signed_roots(TextBuffer& text, const Eigen::Matrix3d& ned) {
+  const auto signed_root = [](double c) { return std::copysign(std::sqrt(std::abs(c)), c); };
+  for (const double value : {std::sqrt(ned(0, 0)), std::sqrt(ned(1, 1)), std::sqrt(ned(2, 2)), signed_root(ned(0, 1)),
+                             signed_root(-ned(1, 2)), signed_root(-ned(0, 2))}) {
+    text.put(' ');
+    text.put_fixed(value, 5, 9);
+  }
+}
+
+constexpr std::string_view kPosHeader =
+    "%  GPST                  latitude(deg) longitude(deg)  height(m)   Q  ns   sdn(m)   sde(m)   sdu(m)  sdne(m)  sdeu(m)  "
+    "sdun(m) age(s)  ratio";
+constexpr std::string_view kPosVelocityHeader =
+    "    vn(m/s)    ve(m/s)    vu(m/s)     sdvn     sdve     sdvu    sdvne    sdveu    sdvun";
+
+/// One line of a `.pos` file; the velocity may be absent.
+void put_pos_line(TextBuffer& text, const record::GnssFix& fix) {
+  const geo::Geodetic p = geo::geodetic_from_ecef(fix.r_ea_e);
+  put_calendar(text, fix.t);
+  text.put(' ');
+  text.put_fixed(p.latitude / geo::kDegree, 9, 14);
+  text.put(' ');
+  text.put_fixed(p.longitude / geo::kDegree, 9, 14);
+  text.put(' ');
+  text.put_fixed(p.height, 4, 10);
+  text.put(' ');
+  text.put_integer(static_cast<int>(fix.quality == record::FixQuality::kUnknown ? record::FixQuality::kSingle : fix.quality),
+                   3);
+  text.put(' ');
+  text.put_integer(fix.satellites.value_or(0), 3);
+  put_signed_roots(text, fix.position_cov_n);
+  text.put(' ');
+  text.put_fixed(fix.age_s.value_or(0.0), 2, 6);
+  text.put(' ');
+  text.put_fixed(fix.ratio.value_or(0.0), 1, 6);
+  if (fix.velocity) {
+    const Eigen::Vector3d& v = fix.velocity->v_ea_n;
+    for (const double component : {v.x(), v.y(), -v.z()}) {
+      text.put(' ');
+      text.put_fixed(component, 5, 10);
+    }
+    put_signed_roots(text, fix.velocity->cov_n);
+  }
+  text.end_line();
+}
+
+class PosWriter final : public TrajectoryWriter {
+ public:
+  explicit PosWriter(const std::filesystem::path& path) : file_(path), text_(file_) {
+    text_.put(kPosHeader);
+    text_.put(kPosVelocityHeader);
+    text_.end_line();
+  }
+
+  void write(const record::TrajectoryEpoch& epoch) override {
+    record::GnssFix fix;
+    fix.t = epoch.nav.t;
+    fix.r_ea_e = epoch.nav.r_eb_e;
+    fix.position_cov_n = epoch.cov.position;
+    const Eigen::Matrix3d C_n_e = geo::C_n_e(geo::geodetic_from_ecef(fix.r_ea_e));
+    fix.velocity = {C_n_e.transpose() * epoch.nav.v_eb_e, epoch.cov.velocity};
+    fix.quality = record::FixQuality::kFixed;
+    put_pos_line(text_, fix);
+  }
+  void close() override {
+    text_.flush();
+    file_.commit();
+  }
+
+ private:
+  AtomicFile file_;
+  TextBuffer text_;
+};
+
+}  // namespace
+
+std::unique_ptr<TrajectoryWriter> make_nav_writer(const std::filesystem::path& path) {
+  return std::make_unique<NavWriter>(path);
+}
+
+std::unique_ptr<TrajectoryWriter> make_csv_writer(const std::filesystem::path& path) {
+  return std::make_unique<CsvWriter>(path);
+}
+
+std::unique_ptr<TrajectoryWriter> make_pos_writer(const std::filesystem::path& path) {
+  return std::make_unique<PosWriter>(path);
+}
+
+std::unique_ptr<TrajectoryWriter> make_trajectory_writer(std::string_view format, const std::filesystem::path& stem) {
+  const auto with = [&](const char* extension) {
+    std::filesystem::path path = stem;
+    path += extension;
+    return path;
+  };
+  if (format == "nav") return make_nav_writer(with(".nav"));
+  if (format == "csv") return make_csv_writer(with(".csv"));
+  if (format == "sbet") return make_sbet_writer(with(".sbet"), with(".smrmsg"));
+  if (format == "pos") return make_pos_writer(with(".pos"));
+  if (format == "kml") return make_kml_writer(with(".kml"), stem.filename().string());
+  throw std::invalid_argument(fmt::format("format: no trajectory format \"{}\"", format));
+}
+
+const std::vector<std::string_view>& trajectory_formats() {
+  static const std::vector<std::string_view> names = {"nav", "csv", "sbet", "pos", "kml"};
+  return names;
+}
+
+void write_gnss_pos(const std::filesystem::path& path, const record::GnssRecording& gnss) {
+  AtomicFile file(path);
+  TextBuffer text(file);
+  const bool velocities =
+      std::all_of(gnss.fixes.begin(), gnss.fixes.end(), [](const auto& fix) { return fix.velocity.has_value(); });
+  text.put(kPosHeader);
+  if (velocities) text.put(kPosVelocityHeader);
+  text.end_line();
+  for (record::GnssFix fix : gnss.fixes) {
+    if (!velocities) fix.velocity.reset();  // every row has the same columns
+    put_pos_line(text, fix);
+  }
+  text.flush();
+  file.commit();
+}
+
+void write_imu_csv(const std::filesystem::path& path, const record::ImuRecording& imu) {
+  AtomicFile file(path);
+  TextBuffer text(file);
+  const bool temperature = !imu.temperature.empty();
+  text.put("time_s,gyro_x_radps,gyro_y_radps,gyro_z_radps,accel_x_mps2,accel_y_mps2,accel_z_mps2");
+  if (temperature) text.put(",temperature_degC");
+  text.end_line();
+  for (std::size_t i = 0; i < imu.samples.size(); ++i) {
+    const record::ImuSample& s = imu.samples[i];
+    text.put_fixed(s.t.sow(), 9);
+    for (const double rate : Eigen::Vector3d(s.dtheta / s.dt)) {
+      text.put(',');
+      text.put_fixed(rate, 13);
+    }
+    for (const double force : Eigen::Vector3d(s.dv / s.dt)) {
+      text.put(',');
+      text.put_fixed(force, 12);
+    }
+    if (temperature) {
+      text.put(',');
+      text.put_fixed(static_cast<double>(imu.temperature[i]), 3);
+    }
+    text.end_line();
+  }
+  text.flush();
+  file.commit();
+}
+
+}  // namespace coast::io

@@ -1,0 +1,106 @@
+#include "coast/noise/error_model.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "processes/processes.hpp"
+
+namespace coast::noise {
+
+namespace {
+
+constexpr std::array<std::string_view, 3> kAxisNames{"x", "y", "z"};
+
+std::vector<ProcessPtr> read_list(const config::Node& list, const EntryContext& context) {
+  std::vector<ProcessPtr> processes;
+  for (const config::Node& entry : list.items())
+    for (ProcessPtr& process : make_processes(entry, context)) processes.push_back(std::move(process));
+  return processes;
+}
+
+// Naming an axis replaces `all` for it.
+ImuErrorModel::Axes read_sensor(const config::Node& node, const EntryContext& context) {
+  ImuErrorModel::Axes axes;
+  const auto all = node.find("all");
+  for (std::size_t i = 0; i < 3; ++i) {
+    const auto own = node.find(kAxisNames[i]);
+    if (!own && !all) throw node.error(fmt::format("no processes for axis {}", kAxisNames[i]), "`all` or every one of x, y, z");
+    axes[i] = read_list(own ? *own : *all, context);
+  }
+  return axes;
+}
+
+// A YAML scalar in single quotes: the one style in which nothing but the quote itself needs care.
+std::string quoted(const std::string& text) {
+  std::string result = "'";
+  for (const char c : text) result += c == '\'' ? std::string("''") : std::string(1, c);
+  return result + "'";
+}
+
+}  // namespace
+
+ImuErrorModel ImuErrorModel::from(const config::Node& file) {
+  const config::Node schema = file.at("schema");
+  if (schema.text() != "coast.imu_error_model/1") throw schema.error("schema " + schema.text(), "coast.imu_error_model/1");
+  ImuErrorModel model;
+  model.sensor_name_ = file.text("sensor", "unnamed");
+  if (const auto rate = file.find("rate_hz")) {
+    model.rate_hz_ = rate->number();
+    if (!(model.rate_hz_ > 0.0)) throw rate->error(rate->text(), "a rate above zero");
+  }
+  model.gyro_ = read_sensor(file.at("gyro"), {Sensor::kGyro, model.rate_hz_});
+  model.accel_ = read_sensor(file.at("accel"), {Sensor::kAccel, model.rate_hz_});
+  file.refuse_unasked();
+  return model;
+}
+
+geo::Psd ImuErrorModel::white_density(Sensor sensor, int axis) const {
+  geo::Psd sum;
+  for (const ProcessPtr& process : axes(sensor)[static_cast<std::size_t>(axis)])
+    if (process->input() == Input::kOne) sum.value += process->white_density().value;
+  return sum;
+}
+
+double ImuErrorModel::bias_sd(Sensor sensor, int axis) const {
+  double variance = 0.0;
+  for (const ProcessPtr& process : axes(sensor)[static_cast<std::size_t>(axis)]) {
+    if (process->states() == 0 || process->input() != Input::kOne) continue;
+    Eigen::MatrixXd P = Eigen::MatrixXd::Zero(process->states(), process->states());
+    Eigen::RowVectorXd h = Eigen::RowVectorXd::Zero(process->states());
+    process->initial_covariance(P);
+    process->output(h);
+    variance += (h * P * h.transpose()).value();
+  }
+  return std::sqrt(variance);
+}
+
+ImuErrorModel ImuErrorModel::with_white_noise_scaled(Sensor sensor, double factor) const {
+  ImuErrorModel scaled = *this;
+  for (auto& axis : sensor == Sensor::kGyro ? scaled.gyro_ : scaled.accel_)
+    for (ProcessPtr& process : axis)
+      if (process->states() == 0) process = make_white_noise(std::sqrt(process->white_density().value) * factor, sensor);
+  return scaled;
+}
+
+std::string ImuErrorModel::yaml() const {
+  std::string text = fmt::format("schema: coast.imu_error_model/1\nsensor: {}\n", quoted(sensor_name_));
+  if (rate_hz_ > 0.0) text += fmt::format("rate_hz: {:.17g}\n", rate_hz_);
+  for (const Sensor sensor : {Sensor::kGyro, Sensor::kAccel}) {
+    text += sensor == Sensor::kGyro ? "gyro:\n" : "accel:\n";
+    for (std::size_t i = 0; i < 3; ++i) {
+      text += fmt::format("  {}:\n", kAxisNames[i]);
+      const Process* last_misalignment = nullptr;
+      for (const ProcessPtr& process : axes(sensor)[i]) {
+        // An entry of misalignment stands for both of its angles.
+        if (process->input() == Input::kPrevAxis && last_misalignment != nullptr) continue;
+        last_misalignment = process->input() == Input::kNextAxis ? process.get() : nullptr;
+        text += fmt::format("    - {}\n", process->yaml());
+      }
+      if (axes(sensor)[i].empty()) text.insert(text.size() - 1, " []");
+    }
+  }
+  return text;
+}
+
+}  // namespace coast::noise

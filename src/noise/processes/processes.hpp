@@ -1,0 +1,21 @@
+#pragma once
+// The registrations that src/noise/registry.cpp lists; each is defined in the process's own file.
+
+#include "coast/noise/gauss_markov.hpp"
+#include "coast/noise/process.hpp"
+
+namespace coast::noise {
+
+Registration white_noise();
+Registration random_constant();
+Registration random_walk();
+Registration gauss_markov();
+Registration scale_factor();
+Registration misalignment();
+
+/// White noise of the given density, [signal]/sqrt(Hz).
+[[nodiscard]] ProcessPtr make_white_noise(double density, Sensor sensor);
+/// beta of an entry's `correlation_time_s`, 0 where the key is absent.
+[[nodiscard]] double beta_of(const config::Node& entry);
+
+}  // namespace coast::noise

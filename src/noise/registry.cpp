@@ -1,0 +1,30 @@
+#include <algorithm>
+
+#include "coast/noise/process.hpp"
+#include "processes/processes.hpp"
+
+namespace coast::noise {
+
+const std::vector<Registration>& registry() {
+  static const std::vector<Registration> table = {
+      white_noise(), random_constant(), random_walk(), gauss_markov(), scale_factor(), misalignment(),
+  };
+  return table;
+}
+
+std::vector<ProcessPtr> make_processes(const config::Node& entry, const EntryContext& context) {
+  const config::Node process = entry.at("process");
+  const std::string name = process.text();
+  const auto found = std::ranges::find(registry(), name, &Registration::name);
+  if (found != registry().end()) return found->make(entry, context);
+  std::vector<std::string> names;
+  std::string list;
+  for (const Registration& r : registry()) {
+    names.emplace_back(r.name);
+    list += (list.empty() ? "" : ", ") + std::string(r.name);
+  }
+  const std::string near = config::nearest(name, names);
+  throw process.error("unknown process '" + name + "'", "one of " + list, near.empty() ? "" : "Did you mean " + near + "?");
+}
+
+}  // namespace coast::noise

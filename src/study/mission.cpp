@@ -1,0 +1,269 @@
+#include "coast/study/mission.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "coast/geo/earth.hpp"
+#include "coast/geo/rotation.hpp"
+#include "coast/geo/units.hpp"
+#include "coast/ins/compensation.hpp"
+#include "coast/record/error.hpp"
+#include "reversed_state.hpp"
+
+namespace coast::study {
+
+namespace {
+
+constexpr double kRefineWindow = 300.0;  // s that the start is refined over
+constexpr double kFitWindow = 1200.0;    // s that noise is fitted over
+
+std::function<void(double)> stage(const Progress& progress, const char* what) {
+  if (!progress) return {};
+  return [&progress, what](double fraction) { progress(what, fraction); };
+}
+
+void check_overlap(const record::ImuRecording& imu, const record::GnssRecording& gnss) {
+  const auto span = [](geo::GpsTime from, geo::GpsTime to) { return geo::to_string(from) + " to " + geo::to_string(to); };
+  if (imu.samples.size() < 2) throw InputError({imu.source, 0, "fewer than two samples", "an IMU recording", ""});
+  if (gnss.fixes.empty()) throw InputError({gnss.source, 0, "no fix", "a GNSS recording", ""});
+  const geo::GpsTime from = std::max(imu.samples.front().t, gnss.fixes.front().t);
+  const geo::GpsTime to = std::min(imu.samples.back().t, gnss.fixes.back().t);
+  if (from < to) return;
+  throw InputError({imu.source, 0,
+                    fmt::format("IMU and GNSS do not overlap: the IMU spans {}, {} spans {}",
+                                span(imu.samples.front().t, imu.samples.back().t), gnss.source,
+                                span(gnss.fixes.front().t, gnss.fixes.back().t)),
+                    "a common stretch of time", "Check gps_week and the time scale (GPS or UTC) of both files."});
+}
+
+double largest(const noise::ImuErrorModel& model, noise::Sensor sensor) {
+  double value = 0.0;
+  for (int axis = 0; axis < 3; ++axis) value = std::max(value, model.bias_sd(sensor, axis));
+  return value;
+}
+
+// A bias known in body axes becomes the state of the additive process with the largest prior on each axis.
+void set_gyro_bias(const estimate::StateLayout& layout, const Eigen::Vector3d& bias_b, estimate::FilterState& state) {
+  std::array<const estimate::StateLayout::SensorBlock*, 3> widest{};
+  for (const auto& block : layout.sensors()) {
+    if (block.sensor != noise::Sensor::kGyro || block.signal_b || block.size != 1) continue;
+    Eigen::Index axis = 0;
+    block.response_b.cwiseAbs().maxCoeff(&axis);
+    auto& slot = widest[static_cast<std::size_t>(axis)];
+    if (slot == nullptr || state.P(block.offset, block.offset) > state.P(slot->offset, slot->offset)) slot = &block;
+  }
+  for (const auto* block : widest)
+    if (block != nullptr && state.P(block->offset, block->offset) > 0.0) state.x(block->offset) = block->response_b.dot(bias_b);
+}
+
+}  // namespace
+
+PreparedMission::PreparedMission(record::ImuRecording imu, record::GnssRecording gnss, Setup setup, const Progress& progress)
+    : imu_(std::move(imu)), gnss_(std::move(gnss)), setup_(std::move(setup)) {
+  check_overlap(imu_, gnss_);
+  find_standstill();
+  align(progress);
+  if (setup_.high_order_compensation) {
+    ins::compensate_chebyshev(imu_);
+    mission_->increments = ins::IncrementKind::kCompensated;
+  }
+  if (setup_.start) return;
+  run_back_to_first_epoch();
+  if (setup_.noise_fit) fit_and_adopt(progress);
+  refine_start(progress);
+  refine_antenna(progress);
+}
+
+// Noise comes first: with noise stated far too small neither the gate nor an offset means anything. The second fit starts
+// from a start that the first has made good.
+void PreparedMission::fit_and_adopt(const Progress& progress) {
+  const noise::ImuErrorModel stated_model = setup_.model;
+  const estimate::FilterOptions stated = setup_.filter;
+  setup_.filter.gate_probability = 0.0;
+  refine_start(progress);
+  for (int round = 0; round < 2; ++round) {
+    setup_.model = stated_model;
+    setup_.filter = stated;
+    noise_fit_ = fit(*setup_.noise_fit, kFitWindow, progress);
+    adopt(*noise_fit_);
+    if (round > 0) return;
+    refine_start(progress);
+    refine_antenna(progress);
+  }
+}
+
+// The offset enters as velocity times time, which holds for milliseconds, and whatever else compares with fixes wants them
+// where they belong: time offset and lever arm take what was found until nothing is.
+void PreparedMission::refine_antenna(const Progress& progress) {
+  constexpr int kRounds = 5;
+  constexpr double kSettledTime = 5e-4;  // s
+  constexpr double kSettledArm = 1e-3;   // m
+  for (int round = 0; round < kRounds; ++round) {
+    if (progress) progress("finding antenna and time offset", static_cast<double>(round) / kRounds);
+    const estimate::ForwardFilter filter(*mission_, setup_.model, setup_.filter);
+    const estimate::StateLayout& layout = filter.layout();
+    if (!layout.time_offset() && !layout.lever_arm()) return;
+    const Eigen::VectorXd x = filter.run(start_state(filter), {}).last.x;
+    const double time = layout.time_offset() ? x(*layout.time_offset()) : 0.0;
+    const Eigen::Vector3d arm = layout.lever_arm() ? x.segment<3>(*layout.lever_arm()).eval() : Eigen::Vector3d::Zero();
+    if (std::abs(time) < kSettledTime && arm.norm() < kSettledArm) return;
+    mission_->time_offset_s += time;
+    mission_->lever_arm_b += arm;
+    refine_start(progress);
+  }
+}
+
+void PreparedMission::find_standstill() {
+  mission_ = std::make_unique<estimate::Mission>(estimate::Mission{imu_, gnss_});
+  mission_->C_s_b = setup_.C_s_b;
+  mission_->lever_arm_b = setup_.lever_arm_b;
+  mission_->time_offset_s = setup_.time_offset_s;
+  for (const ins::StaticPeriod& period : ins::find_static_periods(imu_, &gnss_)) {
+    const record::ImuSample& first = imu_.samples[period.first];
+    mission_->standstill.push_back({first.t - first.dt, imu_.samples[period.last].t});
+  }
+}
+
+void PreparedMission::align(const Progress& progress) {
+  if (setup_.start) {
+    start_ = *setup_.start;
+    return;
+  }
+  if (progress) progress("aligning", 0.0);
+  double density = 0.0;
+  for (int axis = 0; axis < 3; ++axis)
+    density = std::max(density, std::sqrt(setup_.model.white_density(noise::Sensor::kGyro, axis).value));
+  start_ = ins::align({imu_, gnss_, setup_.lever_arm_b, density, largest(setup_.model, noise::Sensor::kGyro),
+                       largest(setup_.model, noise::Sensor::kAccel)},
+                      setup_.vehicle_forward);
+}
+
+estimate::FilterState PreparedMission::start_state(const estimate::ForwardFilter& filter) const {
+  estimate::FilterState state =
+      filter.initial_state(start_.nav, start_.sd_position_n, start_.sd_velocity_n, start_.sd_attitude_n);
+  // Sensor states come first in every layout of one model; auxiliary states start at zero.
+  const Eigen::Index sensors = filter.layout().sensor_end();
+  if (start_sensor_errors_.size() == sensors)
+    state.x.head(sensors) = start_sensor_errors_;
+  else
+    set_gyro_bias(filter.layout(), start_.gyro_bias, state);
+  return state;
+}
+
+// The alignment may have needed motion: from there the filter runs back to where both recordings begin.
+void PreparedMission::run_back_to_first_epoch() {
+  const geo::GpsTime first = std::max(imu_.samples.front().t, gnss_.fixes.front().t - 5.0);
+  if (start_.nav.t - first < 0.5) return;
+  record::ImuRecording imu = imu_;
+  record::GnssRecording gnss = gnss_;
+  std::erase_if(imu.samples, [&](const record::ImuSample& s) { return s.t > start_.nav.t + 1e-6 || s.t < first; });
+  std::erase_if(gnss.fixes, [&](const record::GnssFix& f) { return f.t > start_.nav.t; });
+  imu.temperature.clear();
+  const ReversedRun reversed(*mission_, imu, gnss, start_.nav.t);
+  const estimate::ForwardFilter filter(reversed.mission(), setup_.model, setup_.filter);
+  const estimate::FilterState at_first =
+      reversed.mirrored(filter.run(reversed.mirrored(start_state(filter), filter.layout()), {}).last, filter.layout());
+  start_.nav = at_first.nav;
+  start_sensor_errors_ = at_first.x.head(filter.layout().sensor_end());
+}
+
+// Gauss-Newton on the start: the filter is linearised about a start that the data themselves have corrected. The uncertainty
+// stays that of the alignment, so no fix counts twice for more than its linearisation.
+void PreparedMission::refine_start(const Progress& progress) {
+  constexpr int kRounds = 4;
+  const estimate::ForwardFilter filter(*mission_, setup_.model, setup_.filter);
+  for (int round = 0; round < kRounds; ++round) {
+    if (progress) progress("refining the start", static_cast<double>(round) / kRounds);
+    estimate::KnotStore first;
+    estimate::FilterOutputs outputs;
+    outputs.knots = &first;
+    static_cast<void>(filter.run_until(start_state(filter), start_.nav.t + kRefineWindow, outputs));
+    const estimate::SmoothedKnot knot = estimate::smooth(first, filter.layout()).front();
+    const auto change = estimate::error_between(knot.nav, start_.nav);
+    start_.nav = knot.nav;
+    start_sensor_errors_ = knot.x.head(filter.layout().sensor_end());
+    constexpr double kSettled = 1e-8;  // rad; convergence is quadratic
+    if (change.segment<3>(estimate::kPsi).norm() < kSettled) break;
+  }
+}
+
+void PreparedMission::adopt(const estimate::NoiseFit& fit) {
+  setup_.model = estimate::adjusted(setup_.model, fit.adjustment);
+  setup_.filter = estimate::adjusted(setup_.filter, fit.adjustment);
+}
+
+estimate::NoiseFit PreparedMission::fit(const estimate::NoiseFitChoice& choice, double longest_s,
+                                        const Progress& progress) const {
+  record::ImuRecording imu;
+  imu.source = imu_.source;
+  imu.rate_hz = imu_.rate_hz;
+  const geo::GpsTime end = start_.nav.t + longest_s;
+  for (const record::ImuSample& s : imu_.samples)
+    if (s.t <= end) imu.samples.push_back(s);
+  const estimate::Mission window{imu,
+                                 gnss_,
+                                 mission_->increments,
+                                 mission_->C_s_b,
+                                 mission_->lever_arm_b,
+                                 mission_->time_offset_s,
+                                 mission_->standstill,
+                                 mission_->earth_rate};
+  return estimate::fit_noise(
+      window, setup_.model, setup_.filter, choice,
+      [this](const estimate::ForwardFilter& filter) { return start_state(filter); }, stage(progress, "fitting the noise"));
+}
+
+void PreparedMission::run_backward(const estimate::FilterState& end,
+                                   const std::function<void(const estimate::FilterState&)>& at_knots,
+                                   const Progress& progress) {
+  const geo::GpsTime mirror = imu_.samples.back().t;
+  ins::reverse(imu_, mirror, mission_->increments);
+  ins::reverse(gnss_, mirror);
+  {
+    const ReversedRun reversed(*mission_, imu_, gnss_, mirror, ReversedRun::AlreadyReversed{});
+    const estimate::ForwardFilter filter(reversed.mission(), setup_.model, setup_.filter);
+    estimate::FilterState start =
+        filter.initial_state(end.nav, start_.sd_position_n, start_.sd_velocity_n, start_.sd_attitude_n);
+    start.x = end.x;
+    estimate::FilterOutputs outputs;
+    outputs.at_knots = [&](const estimate::FilterState& state) { at_knots(reversed.mirrored(state, filter.layout())); };
+    outputs.progress = stage(progress, "filtering backward");
+    static_cast<void>(filter.run(reversed.mirrored(start, filter.layout()), outputs));
+  }
+  ins::reverse(imu_, mirror, mission_->increments);
+  ins::reverse(gnss_, mirror);
+}
+
+Solution solve(const PreparedMission& mission, const estimate::FilterOptions& options, bool smooth,
+               const SolutionOutputs& outputs, const Progress& progress) {
+  Solution solution;
+  solution.filter = std::make_unique<estimate::ForwardFilter>(mission.mission(), mission.model(), options);
+  estimate::FilterOutputs filter_outputs;
+  filter_outputs.epochs = outputs.forward;
+  filter_outputs.at_knots = outputs.at_knots;
+  filter_outputs.progress = stage(progress, "filtering forward");
+  if (smooth) filter_outputs.knots = &solution.knots;
+  solution.forward = solution.filter->run(mission.start_state(*solution.filter), filter_outputs);
+  if (!smooth) return solution;
+  solution.smoothed = estimate::smooth(solution.knots, solution.filter->layout(), stage(progress, "smoothing backward"));
+  if (outputs.smoothed)
+    estimate::emit_smoothed(mission.mission(), solution.filter->layout(), solution.knots, solution.smoothed, outputs.smoothed,
+                            stage(progress, "writing the smoothed trajectory"));
+  return solution;
+}
+
+LeverArmCheck check_lever_arm(const PreparedMission& mission, double prior_sd_m, const Progress& progress) {
+  estimate::FilterOptions options = mission.options();
+  options.auxiliary.lever_arm_sd_m = prior_sd_m;
+  estimate::ForwardFilter filter(mission.mission(), mission.model(), options);
+  estimate::FilterOutputs outputs;
+  outputs.progress = stage(progress, "checking the lever arm");
+  const estimate::FilterState last = filter.run(mission.start_state(filter), outputs).last;
+  const Eigen::Index at = *filter.layout().lever_arm();
+  const Eigen::Vector3d moved = mission.mission().lever_arm_b - mission.setup().lever_arm_b;  // by the estimate so far
+  return {moved + last.x.segment<3>(at), last.P.diagonal().segment<3>(at).cwiseSqrt()};
+}
+
+}  // namespace coast::study

@@ -1,0 +1,31 @@
+#pragma once
+// A mission run backwards; private to the room.
+
+#include "coast/estimate/forward_filter.hpp"
+#include "coast/ins/reversal.hpp"
+
+namespace coast::study {
+
+/// View of a mission to a clock that runs backwards from `mirror`.
+class ReversedRun {
+ public:
+  struct AlreadyReversed {};
+  /// Reverses the recordings in place; they must outlive the run.
+  ReversedRun(const estimate::Mission& forward, record::ImuRecording& imu, record::GnssRecording& gnss, geo::GpsTime mirror)
+      : ReversedRun(forward, imu, gnss, mirror, AlreadyReversed{}) {
+    ins::reverse(imu, mirror, forward.increments);
+    ins::reverse(gnss, mirror);
+  }
+  ReversedRun(const estimate::Mission& forward, const record::ImuRecording& imu, const record::GnssRecording& gnss,
+              geo::GpsTime mirror, AlreadyReversed);
+
+  [[nodiscard]] const estimate::Mission& mission() const { return mission_; }
+  /// Into reversed time and back (its own inverse): velocity, additive gyro errors and time offset change sign.
+  [[nodiscard]] estimate::FilterState mirrored(const estimate::FilterState& state, const estimate::StateLayout& layout) const;
+
+ private:
+  geo::GpsTime mirror_;
+  estimate::Mission mission_;
+};
+
+}  // namespace coast::study

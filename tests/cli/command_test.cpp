@@ -1,0 +1,218 @@
+// The program as a user runs it: exit status, messages, files.
+
+#include <gtest/gtest.h>
+#include <sys/wait.h>
+
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <sstream>
+
+#include "load.hpp"
+#include "run_config.hpp"
+#include "support/schema.hpp"
+#include "support/support.hpp"
+
+namespace coast::cli {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct Outcome {
+  int status;
+  std::string error;  ///< standard error
+};
+
+std::string text_of(const fs::path& file) {
+  std::ifstream stream(file, std::ios::binary);
+  return {std::istreambuf_iterator<char>(stream), {}};
+}
+
+Outcome run(const std::string& arguments, const fs::path& folder) {
+  const fs::path log = folder / "stderr.txt";
+  const std::string command = fmt::format("'{}' {} >/dev/null 2>'{}'", COAST_PROGRAM, arguments, log.string());
+  const int status = std::system(command.c_str());
+  return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, text_of(log)};
+}
+
+void write(const fs::path& file, const std::string& text) {
+  std::ofstream(file, std::ios::binary) << text;
+}
+
+constexpr const char* kScenario = R"(
+schema: coast.scenario/1
+trajectory: {kind: car_roundabout, duration_s: 360, static_s: 30, origin_deg_m: [46.52, 6.57, 400], course_deg: 30}
+imu: {rate_hz: 100, error_model: model.yaml, lever_arm_m: [0.3, -0.2, -1.1]}
+gnss: {rate_hz: 5, sd_m: [0.01, 0.01, 0.02]}
+outages: [{elapsed_s: 150, duration_s: 20}]
+start_gps: {week: 2374, sow: 208800}
+seed: 4
+)";
+constexpr const char* kModel = R"(
+schema: coast.imu_error_model/1
+sensor: test
+gyro: {all: [{process: white_noise, density: 0.1, unit: deg/sqrt(h)}, {process: random_constant, sigma: 5, unit: deg/h}]}
+accel: {all: [{process: white_noise, density: 60, unit: ug/sqrt(Hz)}, {process: random_constant, sigma: 1, unit: mg}]}
+)";
+
+/// A simulated recording, made once for the tests of this file.
+const fs::path& recording() {
+  static const test::TemporaryDirectory folder;
+  static const fs::path made = [] {
+    write(folder.path() / "scenario.yaml", kScenario);
+    write(folder.path() / "model.yaml", kModel);
+    const Outcome outcome = run(
+        fmt::format("simulate '{}' --out '{}'", (folder.path() / "scenario.yaml").string(), (folder.path() / "rec").string()),
+        folder.path());
+    EXPECT_EQ(outcome.status, 0) << outcome.error;
+    return folder.path() / "rec";
+  }();
+  return made;
+}
+
+TEST(Commands, ProcessesWhatSimulateWroteAndRepeatsItFromTheResolvedFile) {
+  const test::TemporaryDirectory folder;
+  const fs::path out = folder.path() / "out";
+  const Outcome first =
+      run(fmt::format("process '{}' --out '{}'", (recording() / "run.yaml").string(), out.string()), folder.path());
+  ASSERT_EQ(first.status, 0) << first.error;
+  for (const char* name :
+       {"trajectory.nav", "forward.nav", "trajectory.csv", "summary.json", "report.html", "run.resolved.yaml"})
+    EXPECT_TRUE(fs::exists(out / name)) << name;
+  const auto summary = nlohmann::json::parse(text_of(out / "summary.json"));
+  test::expect_valid("summary", summary);
+  test::expect_valid("run", test::load_yaml_as_json(recording() / "run.yaml"));
+  test::expect_valid("run", test::load_yaml_as_json(out / "run.resolved.yaml"));
+
+  // White GNSS noise of 1 and 2 cm at 5 Hz: smoothed within a centimetre outside the outage, decimetres inside.
+  const auto& smoothed = summary["reference"]["smoothed"];
+  for (int i = 0; i < 3; ++i) EXPECT_LE(smoothed["position_rms_m"][i].get<double>(), 0.03) << i;
+  // 3 degrees of freedom, 1000 epochs: the mean of NIS lies within 3.9 sqrt(6 / 1000) of 3 but once in ten thousand.
+  EXPECT_NEAR(summary["nis"]["mean"].get<double>(), summary["nis"]["expected"].get<double>(), 0.3);
+  ASSERT_EQ(summary["outages"].size(), 1U);
+  EXPECT_LT(summary["outages"][0]["smoothed"]["horizontal_max_m"].get<double>(),
+            summary["outages"][0]["forward"]["horizontal_max_m"].get<double>());
+
+  const fs::path again = folder.path() / "again";
+  const Outcome second =
+      run(fmt::format("process '{}' --out '{}'", (out / "run.resolved.yaml").string(), again.string()), folder.path());
+  ASSERT_EQ(second.status, 0) << second.error;
+  EXPECT_EQ(text_of(out / "trajectory.nav"), text_of(again / "trajectory.nav"));
+
+  const Outcome compared = run(fmt::format("compare '{}' '{}' --out '{}'", (out / "trajectory.nav").string(),
+                                           (recording() / "truth.nav").string(), (folder.path() / "cmp").string()),
+                               folder.path());
+  ASSERT_EQ(compared.status, 0) << compared.error;
+  const auto comparison = nlohmann::json::parse(text_of(folder.path() / "cmp" / "comparison.json"));
+  for (int i = 0; i < 3; ++i)  // 1 um and 10 um steps of the .nav file's digits
+    EXPECT_NEAR(comparison["position_rms_m"][i].get<double>(), smoothed["position_rms_m"][i].get<double>(), 2e-5) << i;
+
+  fs::remove(out / "report.html");
+  EXPECT_EQ(run(fmt::format("report '{}'", out.string()), folder.path()).status, 0);
+  EXPECT_GT(fs::file_size(out / "report.html"), 100000U);
+}
+
+struct Spoiled {
+  const char* what;
+  const char* from;  ///< replaced in a good run.yaml
+  const char* to;
+  const char* message;  ///< must be part of standard error
+};
+
+class SpoiledRun : public testing::TestWithParam<Spoiled> {};
+
+TEST_P(SpoiledRun, EndsWithStatusTwoAndNamesFileAndLine) {
+  const test::TemporaryDirectory folder;
+  std::string text = text_of(recording() / "run.yaml");
+  for (const char* name : {"imu.csv", "gnss.pos", "truth.nav", "error_model.yaml"}) {
+    const auto at = text.find(std::string(" ") + name);
+    ASSERT_NE(at, std::string::npos) << name;
+    text.replace(at + 1, std::string(name).size(), (recording() / name).string());
+  }
+  const auto at = text.find(GetParam().from);
+  ASSERT_NE(at, std::string::npos) << text;
+  text.replace(at, std::string(GetParam().from).size(), GetParam().to);
+  write(folder.path() / "spoiled.yaml", text);
+  const Outcome outcome = run(fmt::format("process '{}'", (folder.path() / "spoiled.yaml").string()), folder.path());
+  EXPECT_EQ(outcome.status, 2) << outcome.error;
+  EXPECT_NE(outcome.error.find("spoiled.yaml:"), std::string::npos) << outcome.error;
+  EXPECT_NE(outcome.error.find(GetParam().message), std::string::npos) << outcome.error;
+  EXPECT_FALSE(fs::exists(folder.path() / "spoiled.out" / "summary.json"));
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Runs, SpoiledRun,
+    testing::Values(Spoiled{"unknown key", "lever_arm_m:", "leverarm_m:", "lever_arm_m"},
+                    Spoiled{"a word for a number", "gps_week: 2374", "gps_week: soon", "soon"},
+                    Spoiled{"two of three numbers", "mounting_deg: [0, 0, 0]", "mounting_deg: [0, 0]", "mounting_deg"},
+                    Spoiled{"left-handed axes", "axes: [x, y, z]", "axes: [x, y, -z]", "axes"},
+                    Spoiled{"batch", "reference:", "smoother: batch\nreference:", "batch"},
+                    Spoiled{"a vehicle that does not exist", "reference:", "vehicle: tram\nreference:", "tram"},
+                    Spoiled{"an outage without end", "duration_s: 20", "duration_s: 0", "duration_s"},
+                    Spoiled{"a start without its time",
+                            "reference:", "start: {position_deg_m: [1, 2, 3]}\nreference:", "time_s"}),
+    [](const testing::TestParamInfo<Spoiled>& spoiled) { return fmt::format("n{}", spoiled.index); });
+
+TEST(Commands, BadInputIsStatusTwoAndUnwritableOutputStatusOne) {
+  const test::TemporaryDirectory folder;
+  const std::string here = folder.path().string();
+  EXPECT_EQ(run(fmt::format("process '{}/none.yaml'", here), folder.path()).status, 2);
+  EXPECT_EQ(run(fmt::format("process '{}'", here), folder.path()).status, 2);
+  write(folder.path() / "empty.yaml", "");
+  EXPECT_EQ(run(fmt::format("process '{}/empty.yaml'", here), folder.path()).status, 2);
+  EXPECT_EQ(run("process", folder.path()).status, 2);
+  EXPECT_EQ(run("procces x.yaml", folder.path()).status, 2);
+  EXPECT_EQ(run("--help", folder.path()).status, 0);
+  write(folder.path() / "file", "");
+  const Outcome unwritable =
+      run(fmt::format("process '{}' --out '{}/file/out'", (recording() / "run.yaml").string(), here), folder.path());
+  EXPECT_EQ(unwritable.status, 1) << unwritable.error;
+  EXPECT_NE(unwritable.error.find(here + "/file/out"), std::string::npos) << unwritable.error;
+}
+
+std::vector<fs::path> yaml_files(const char* folder) {
+  std::vector<fs::path> files;
+  for (const auto& entry : fs::directory_iterator(fs::path(COAST_SOURCE_DIR) / "configs" / folder))
+    if (entry.path().extension() == ".yaml") files.push_back(entry.path());
+  std::sort(files.begin(), files.end());
+  return files;
+}
+
+TEST(Recordings, EveryShippedRunFileFitsItsRecording) {
+  if (!test::data_dir()) GTEST_SKIP() << "COAST_DATA is not set: the real recordings are not at hand";
+  for (const fs::path& file : yaml_files("recordings")) {
+    if (file.stem().string().ends_with("-imu")) continue;  // error models
+    const RunConfig config = read_run_config(file);
+    const Recordings recordings = load(config);
+    EXPECT_GT(recordings.imu.samples.size(), 10000U) << file;
+    EXPECT_FALSE(recordings.inspection.empty()) << file;
+  }
+}
+
+// Figures of the first real run, with room for another machine's rounding: reference_runs/car-drive-0708 holds the numbers.
+TEST(Recordings, CarDriveIsConsistentAndCoasts) {
+  if (!test::data_dir()) GTEST_SKIP() << "COAST_DATA is not set: the real recordings are not at hand";
+  const test::TemporaryDirectory folder;
+  const fs::path file = fs::path(COAST_SOURCE_DIR) / "configs" / "recordings" / "car-drive-0708.yaml";
+  const Outcome outcome =
+      run(fmt::format("process '{}' --out '{}'", file.string(), (folder.path() / "out").string()), folder.path());
+  ASSERT_EQ(outcome.status, 0) << outcome.error;
+  const auto summary = nlohmann::json::parse(text_of(folder.path() / "out" / "summary.json"));
+  test::expect_valid("summary", summary);
+  ASSERT_FALSE(summary["events"].empty());  // its heights are above mean sea level, and that is said
+  const double nis = summary["nis"]["mean"].get<double>() / summary["nis"]["expected"].get<double>();
+  EXPECT_NEAR(nis, 1.0, 0.1);  // the consistency asked of a real recording
+  // An independent optimal smoother reaches 0.11, 0.42, 0.96, 6.0 m, KF-GINS forward 2.0, 11, 32, 207 m (METHODS, same gaps).
+  const auto& sweep = summary["outage_sweep"];
+  ASSERT_EQ(sweep.size(), 4U);
+  const std::array<double, 4> smoothed_limit{0.15, 0.6, 1.6, 8.0};
+  const std::array<double, 4> forward_limit{2.0, 11.0, 32.0, 207.0};
+  for (std::size_t i = 0; i < 4; ++i) {
+    EXPECT_LT(sweep[i]["smoothed_horizontal_max_against_gnss"]["median_m"].get<double>(), smoothed_limit[i]) << i;
+    EXPECT_LT(sweep[i]["forward_horizontal_max_against_gnss"]["median_m"].get<double>(), forward_limit[i]) << i;
+  }
+}
+
+}  // namespace
+}  // namespace coast::cli

@@ -1,0 +1,122 @@
+// The schemas of docs/schema: their own examples, every shipped configuration, and what they must refuse.
+
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <set>
+
+#include "coast/geo/units.hpp"
+#include "support/schema.hpp"
+
+namespace coast {
+namespace {
+
+namespace fs = std::filesystem;
+using nlohmann::json;
+
+const fs::path kSource = COAST_SOURCE_DIR;
+
+TEST(Schemas, AreOfOneDraft) {
+  for (const auto& file : fs::directory_iterator(kSource / "docs" / "schema")) {
+    const json schema = test::schema(file.path().stem().stem().string());
+    EXPECT_EQ(schema.at("$schema"), "http://json-schema.org/draft-07/schema#") << file.path();
+  }
+}
+
+TEST(Schemas, OwnExamplesAreValid) {
+  for (const char* name : {"imu_error_model", "run", "scenario", "study", "summary"}) {
+    const json examples = test::schema(name).at("examples");
+    ASSERT_FALSE(examples.empty()) << name;
+    for (const json& example : examples) test::expect_valid(name, example, "example");
+  }
+}
+
+TEST(Schemas, ShippedConfigurationsAreValid) {
+  int count = 0;
+  for (const auto& file : fs::recursive_directory_iterator(kSource / "configs")) {
+    if (file.path().extension() != ".yaml") continue;
+    const json document = test::load_yaml_as_json(file.path());
+    test::expect_valid(test::schema_of(document), document, file.path().string());
+    ++count;
+  }
+  EXPECT_GE(count, 12);
+}
+
+bool refused(const std::string& name, const json& patch) {
+  json document = test::schema(name).at("examples").at(0);
+  document.merge_patch(patch);
+  return !test::schema_violations(name, document).empty();
+}
+
+TEST(Schemas, RefuseWhatTheProgramRefuses) {
+  EXPECT_FALSE(refused("run", json::object()));
+  EXPECT_TRUE(refused("run", {{"imu", {{"fromat", "csv"}}}}));
+  EXPECT_TRUE(refused("run", {{"imu", {{"lever_arm_m", {1, 2}}}}}));
+  EXPECT_TRUE(refused("run", {{"imu", {{"error_model", nullptr}}}}));  // a merge patch with null removes the key
+  EXPECT_TRUE(refused("run", {{"smoother", "kalman"}}));
+  EXPECT_TRUE(refused("run", {{"outages", {{{"start_s", 1}}}}}));
+  EXPECT_TRUE(refused("run", {{"start", {{"time_s", 1}}}}));
+  EXPECT_FALSE(refused("run", {{"vehicle", "car"}}));
+  EXPECT_FALSE(refused("run", {{"outages", {{"durations_s", {20, 60}}}}}));
+  EXPECT_TRUE(refused("study", {{"sweep", {{"durations_s", {0}}}}}));
+  EXPECT_TRUE(refused("scenario", {{"trajectory", {{"kind", "rocket"}}}}));
+  EXPECT_TRUE(refused("scenario", {{"schema", nullptr}}));
+  EXPECT_TRUE(refused("summary", {{"gnss", {{"used", -1}}}}));
+  EXPECT_FALSE(refused("summary", {{"more", 1}}));  // outputs may gain keys
+}
+
+json with_gyro_entry(const json& entry) {
+  return {{"gyro", {{"x", {entry}}}}};
+}
+
+TEST(Schemas, ErrorModelEntriesNeedAUnitThatFits) {
+  const std::string name = "imu_error_model";
+  EXPECT_FALSE(refused(name, with_gyro_entry({{"process", "white_noise"}, {"density", 0.1}, {"unit", "deg/sqrt(h)"}})));
+  EXPECT_TRUE(refused(name, with_gyro_entry({{"process", "white_noise"}, {"density", 0.1}})));
+  EXPECT_TRUE(refused(name, with_gyro_entry({{"process", "white_noise"}, {"density", 0.1}, {"unit", "ug/sqrt(Hz)"}})));
+  EXPECT_TRUE(refused(name, with_gyro_entry({{"process", "white_noise"}, {"sigma", 0.1}, {"unit", "deg/sqrt(h)"}})));
+  EXPECT_TRUE(refused(name, with_gyro_entry({{"process", "pink"}, {"density", 0.1}, {"unit", "deg/sqrt(h)"}})));
+  EXPECT_TRUE(refused(name, with_gyro_entry({{"process", "gauss_markov"}, {"sigma", 0.1}, {"unit", "deg/h"}})));
+}
+
+// Collects the units that a schema allows in the entries of one sensor and one key.
+std::set<std::string> units_of(const json& schema, const std::string& sensor, const std::string& process, const char* key) {
+  std::set<std::string> units;
+  for (const json& entry : schema.at("definitions").at(sensor + "_entry").at("oneOf")) {
+    const json& properties = entry.at("properties");
+    if (properties.at("process").at("const") != process || !properties.contains(key)) continue;
+    for (const json& unit : properties.at("unit").at("enum")) units.insert(unit.get<std::string>());
+  }
+  return units;
+}
+
+std::set<std::string> table_of(geo::Dimension dimension) {
+  std::set<std::string> units;
+  for (const geo::Unit& unit : geo::units()) {
+    if (unit.dimension == dimension) units.emplace(unit.name);
+  }
+  return units;
+}
+
+TEST(Schemas, UnitsAreThoseOfTheTable) {
+  using geo::Dimension;
+  const json schema = test::schema("imu_error_model");
+  const auto expect = [&](const char* sensor, const char* process, const char* key, Dimension dimension) {
+    EXPECT_EQ(units_of(schema, sensor, process, key), table_of(dimension)) << sensor << " " << process;
+  };
+  expect("gyro", "white_noise", "density", Dimension::kAngularRateNoise);
+  expect("gyro", "white_noise", "variance_per_sample", Dimension::kAngularRateVariance);
+  expect("gyro", "random_walk", "density", Dimension::kAngularRateWalk);
+  expect("gyro", "gauss_markov", "sigma", Dimension::kAngularRate);
+  expect("gyro", "random_constant", "sigma", Dimension::kAngularRate);
+  expect("accel", "white_noise", "density", Dimension::kSpecificForceNoise);
+  expect("accel", "white_noise", "variance_per_sample", Dimension::kSpecificForceVariance);
+  expect("accel", "random_walk", "density", Dimension::kSpecificForceWalk);
+  expect("accel", "gauss_markov", "sigma", Dimension::kSpecificForce);
+  expect("accel", "scale_factor", "sigma", Dimension::kRatio);
+  expect("gyro", "misalignment", "sigma", Dimension::kAngle);
+}
+
+}  // namespace
+}  // namespace coast

@@ -1,0 +1,152 @@
+#include "fuzz/entries.hpp"
+
+#include <Eigen/Cholesky>
+#include <fstream>
+#include <stdexcept>
+
+#include "coast/io/gnss.hpp"
+#include "coast/io/imu.hpp"
+#include "coast/io/inspect.hpp"
+#include "coast/io/reference.hpp"
+#include "coast/io/yaml.hpp"
+#include "coast/record/error.hpp"
+#include "support/support.hpp"
+
+namespace coast::fuzz {
+
+namespace {
+
+void require(bool holds, const char* promise) {
+  if (!holds) throw std::logic_error(promise);
+}
+
+template <class Records>
+void require_increasing(const Records& records) {
+  for (std::size_t i = 1; i < records.size(); ++i) require(records[i].t > records[i - 1].t, "time increases");
+}
+
+void check(const record::ImuRecording& imu) {
+  require(imu.samples.size() >= 2, "at least two samples");
+  require_increasing(imu.samples);
+  for (const auto& s : imu.samples) {
+    require(s.dt > 0.0, "intervals are positive");
+    require(s.dtheta.allFinite() && s.dv.allFinite(), "increments are finite");
+  }
+  (void)io::inspect(imu);
+}
+
+void check(const record::GnssRecording& gnss) {
+  require(!gnss.fixes.empty(), "at least one fix");
+  require_increasing(gnss.fixes);
+  for (const auto& fix : gnss.fixes) {
+    require(fix.r_ea_e.allFinite() && fix.r_ea_e.norm() > 5e6, "positions are on the Earth");
+    require(fix.position_cov_n.llt().info() == Eigen::Success, "covariance is positive definite");
+    if (fix.velocity) require(fix.velocity->cov_n.llt().info() == Eigen::Success, "velocity covariance is positive definite");
+  }
+}
+
+void check(const record::Trajectory& trajectory) {
+  require(!trajectory.states.empty(), "at least one epoch");
+  require_increasing(trajectory.states);
+  for (const auto& s : trajectory.states) {
+    require(s.r_eb_e.allFinite() && s.v_eb_e.allFinite(), "states are finite");
+    require(std::abs(s.q_b_e.norm() - 1.0) < 1e-9, "quaternions are unit");
+  }
+}
+
+/// The bytes as a file.
+const std::filesystem::path& as_file(std::string_view bytes) {
+  static const test::TemporaryDirectory folder;
+  static const std::filesystem::path path = folder.path() / "input";
+  std::ofstream(path, std::ios::binary | std::ios::trunc).write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
+  return path;
+}
+
+template <class Read>
+void read_and_check(Read&& read) {
+  try {
+    check(read());
+  } catch (const InputError&) {
+    // Refused with a message: as it should be.
+  }
+}
+
+void imu(std::string_view bytes, io::ImuFileOptions options) {
+  options.file = as_file(bytes);
+  options.time.gps_week = 2300;
+  read_and_check([&] { return io::read_imu(options); });
+}
+
+void imu_auto(std::string_view bytes) {
+  imu(bytes, {});
+}
+
+void imu_table(std::string_view bytes) {
+  io::ImuFileOptions options;
+  options.time_columns = {1};
+  options.gyro_columns = {2, 3, 4};
+  options.accel_columns = {5, 6, 7};
+  imu(bytes, options);
+}
+
+void imu_binary(std::string_view bytes) {
+  io::ImuFileOptions options;
+  options.format = "binary";
+  options.time_columns = {1};
+  options.gyro_columns = {2, 3, 4};
+  options.accel_columns = {5, 6, 7};
+  options.binary.type = io::BinaryLayout::Type::kF64;
+  imu(bytes, options);
+}
+
+void gnss(std::string_view bytes, io::GnssFileOptions options) {
+  options.file = as_file(bytes);
+  options.time.gps_week = 2300;
+  read_and_check([&] { return io::read_gnss(options); });
+}
+
+void gnss_auto(std::string_view bytes) {
+  gnss(bytes, {});
+}
+
+void gnss_table(std::string_view bytes) {
+  io::GnssFileOptions options;
+  options.time.kind = io::TimeKind::kUtc;
+  options.time_columns = {1};
+  options.position_columns = {2, 3, 4};
+  options.sd_columns = {5, 6, 7};
+  options.quality_column = 8;
+  options.satellites_column = 9;
+  gnss(bytes, options);
+}
+
+void reference_auto(std::string_view bytes) {
+  io::ReferenceFileOptions options = io::ReferenceFileOptions::of_file(as_file(bytes));
+  options.time.gps_week = 2300;
+  read_and_check([&] { return io::read_reference(options); });
+}
+
+void yaml(std::string_view bytes) {
+  try {
+    const config::Node root = io::parse_yaml(std::string(bytes), "run.yaml");
+    if (const auto node = root.find("imu")) (void)io::ImuFileOptions::from(*node);
+    if (const auto node = root.find("gnss")) (void)io::GnssFileOptions::from(*node);
+    if (const auto node = root.find("reference")) (void)io::ReferenceFileOptions::from(*node);
+    root.refuse_unasked();
+  } catch (const InputError&) {
+    // Refused with a message: as it should be.
+  }
+}
+
+}  // namespace
+
+const std::vector<Entry>& entries() {
+  static const std::vector<Entry> table = {
+      {"imu", imu_auto},   {"imu_table", imu_table},   {"imu_binary", imu_binary},
+      {"gnss", gnss_auto}, {"gnss_table", gnss_table}, {"reference", reference_auto},
+      {"yaml", yaml},
+  };
+  return table;
+}
+
+}  // namespace coast::fuzz

@@ -1,0 +1,38 @@
+// Every file of the corpus through the entry that it was found with. Runs in every build.
+
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+
+#include "fuzz/entries.hpp"
+
+namespace coast::fuzz {
+namespace {
+
+const std::filesystem::path kCorpus = std::filesystem::path(COAST_SOURCE_DIR) / "tests/fuzz/corpus";
+
+TEST(FuzzCorpus, EveryFileIsReadOrRefused) {
+  for (const Entry& entry : entries()) {
+    int files = 0;
+    for (const auto& file : std::filesystem::directory_iterator(kCorpus / entry.name)) {
+      std::ifstream stream(file.path(), std::ios::binary);
+      const std::string bytes{std::istreambuf_iterator<char>(stream), std::istreambuf_iterator<char>()};
+      EXPECT_NO_THROW(entry.run(bytes)) << file.path();
+      ++files;
+    }
+    EXPECT_GE(files, 3) << entry.name;
+  }
+}
+
+TEST(FuzzCorpus, EveryFolderHasItsEntry) {
+  for (const auto& folder : std::filesystem::directory_iterator(kCorpus)) {
+    const auto& all = entries();
+    EXPECT_TRUE(std::any_of(all.begin(), all.end(), [&](const Entry& e) { return e.name == folder.path().filename(); }))
+        << folder.path();
+  }
+}
+
+}  // namespace
+}  // namespace coast::fuzz

@@ -1,0 +1,227 @@
+// Every process of the registry, as the table lists it; then the closed forms of each.
+
+#include "coast/noise/process.hpp"
+
+#include <gtest/gtest.h>
+
+#include <Eigen/Eigenvalues>
+#include <cmath>
+#include <regex>
+
+#include "coast/geo/units.hpp"
+#include "coast/noise/gauss_markov.hpp"
+#include "coast/record/error.hpp"
+#include "noise/entries.hpp"
+#include "support/support.hpp"
+
+namespace coast {
+namespace {
+
+using noise::Sensor;
+using test::block_of;
+using test::process_of;
+using test::processes_of;
+
+struct Example {
+  const noise::Registration* registration;
+  Sensor sensor;
+  [[nodiscard]] std::string text() const {
+    return std::string(sensor == Sensor::kGyro ? registration->gyro_example : registration->accel_example);
+  }
+};
+
+std::vector<Example> examples() {
+  std::vector<Example> all;
+  for (const noise::Registration& r : noise::registry()) {
+    all.push_back({&r, Sensor::kGyro});
+    all.push_back({&r, Sensor::kAccel});
+  }
+  return all;
+}
+
+std::string example_name(const testing::TestParamInfo<Example>& info) {
+  return std::string(info.param.registration->name) + (info.param.sensor == Sensor::kGyro ? "_gyro" : "_accel");
+}
+
+class EveryProcess : public testing::TestWithParam<Example> {};
+INSTANTIATE_TEST_SUITE_P(Registry, EveryProcess, testing::ValuesIn(examples()), example_name);
+
+TEST_P(EveryProcess, ExampleIsReadAndNamed) {
+  const auto processes = processes_of(GetParam().text(), GetParam().sensor);
+  ASSERT_FALSE(processes.empty());
+  for (const auto& process : processes) EXPECT_EQ(process->name(), GetParam().registration->name);
+  EXPECT_FALSE(GetParam().registration->help.empty());
+}
+
+TEST_P(EveryProcess, TwoPartsOfAnIntervalEqualTheWhole) {
+  for (const auto& process : processes_of(GetParam().text(), GetParam().sensor)) {
+    for (const double dt : {1e-4, 0.01, 3.0, 5000.0}) {
+      const auto whole = block_of(*process, dt), a = block_of(*process, 0.3 * dt), b = block_of(*process, 0.7 * dt);
+      // Rounding of exp and expm1 only.
+      test::expect_near_matrix(b.Phi * a.Phi, whole.Phi, 1e-14, "Phi");
+      test::expect_near_matrix(b.Phi * a.Q_d * b.Phi.transpose() + b.Q_d, whole.Q_d, 1e-13, "Q_d");
+    }
+  }
+}
+
+TEST_P(EveryProcess, CovariancesAreSymmetricAndNotNegative) {
+  for (const auto& process : processes_of(GetParam().text(), GetParam().sensor)) {
+    if (process->states() == 0) continue;
+    const auto block = block_of(*process, 0.1);
+    for (const Eigen::MatrixXd& M : {block.Q_d, block.P}) {
+      EXPECT_EQ(M, M.transpose());
+      EXPECT_GE(Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(M).eigenvalues().minCoeff(), 0.0);
+    }
+    EXPECT_GT(block.h.norm(), 0.0);
+  }
+}
+
+TEST_P(EveryProcess, EntryWrittenInSiMakesTheSameProcess) {
+  const auto before = processes_of(GetParam().text(), GetParam().sensor);
+  const auto after = processes_of(before.front()->yaml(), GetParam().sensor);
+  ASSERT_EQ(after.size(), before.size());
+  for (std::size_t i = 0; i < before.size(); ++i) {
+    const auto a = block_of(*after[i], 0.7), b = block_of(*before[i], 0.7);
+    EXPECT_EQ(after[i]->input(), before[i]->input());
+    EXPECT_NEAR(after[i]->white_density().value, before[i]->white_density().value, 1e-15 * before[i]->white_density().value);
+    // 17 digits and one division by the unit.
+    test::expect_near_matrix(a.Phi, b.Phi, 1e-15, "Phi");
+    test::expect_near_matrix(a.Q_d, b.Q_d, 1e-14, "Q_d");
+    test::expect_near_matrix(a.P, b.P, 1e-15, "P");
+  }
+}
+
+// A spoiled entry is an error that names the line of what is wrong (the entry stands alone on line 1).
+TEST_P(EveryProcess, SpoiledEntriesAreRefusedWithTheirLine) {
+  const std::string good = GetParam().text();
+  const std::regex unit(", unit: [^,}]+"), value("(sigma|density): [^,}]+");
+  for (const std::string& spoiled :
+       {std::regex_replace(good, unit, ""), std::regex_replace(good, unit, ", unit: K/h"),
+        std::regex_replace(good, unit, ", unit: " + std::string("m/s")), std::regex_replace(good, value, "$1: -1"),
+        std::regex_replace(good, value, "$1: large"), std::regex_replace(good, value, "lambda: 1"),
+        std::regex_replace(good, std::regex("process: [a-z_]+"), "process: brown_noise")}) {
+    ASSERT_NE(spoiled, good);
+    try {
+      (void)processes_of(spoiled, GetParam().sensor);
+      ADD_FAILURE() << "accepted: " << spoiled;
+    } catch (const InputError& e) {
+      EXPECT_EQ(e.parts().line, 1) << e.what();
+      EXPECT_EQ(std::string(e.what()).rfind("entry.yaml:1: ", 0), 0u) << e.what();
+    }
+  }
+}
+
+TEST(Registry, UnknownProcessNamesTheNearest) {
+  try {
+    (void)process_of("{process: white_nose, density: 1, unit: rad/s}", Sensor::kGyro);
+    FAIL();
+  } catch (const InputError& e) {
+    EXPECT_NE(std::string(e.what()).find("white_noise?"), std::string::npos) << e.what();
+  }
+}
+
+TEST(WhiteNoise, UnitsOfDataSheets) {
+  // 0.15 deg/sqrt(h): deg = pi/180 rad, sqrt(h) = 60 sqrt(s). 50 ug/sqrt(Hz): g = 9.80665 m/s^2.
+  const double arw = 0.15 * M_PI / 180.0 / 60.0;
+  const double vrw = 50e-6 * 9.80665;
+  const auto density = [](const char* entry, Sensor sensor, double rate = 0.0) {
+    return process_of(entry, sensor, rate)->white_density().value;
+  };
+  EXPECT_NEAR(density("{process: white_noise, density: 0.15, unit: deg/sqrt(h)}", Sensor::kGyro), arw * arw, 1e-14 * arw * arw);
+  EXPECT_NEAR(density("{process: white_noise, density: 50, unit: ug/sqrt(Hz)}", Sensor::kAccel), vrw * vrw, 1e-14 * vrw * vrw);
+  EXPECT_NEAR(density("{process: white_noise, density: 0.6, unit: m/s/sqrt(h)}", Sensor::kAccel), 1e-4, 1e-18);
+  // A variance of samples at 100 Hz is a density of a hundredth: the paper's 3.6e-5 (m/s^2)^2 is 61 ug/sqrt(Hz).
+  EXPECT_NEAR(density("{process: white_noise, variance_per_sample: 3.6e-5, unit: (m/s^2)^2}", Sensor::kAccel, 100.0), 3.6e-7,
+              1e-21);
+}
+
+TEST(WhiteNoise, VariancePerSampleNeedsARate) {
+  EXPECT_THROW((void)process_of("{process: white_noise, variance_per_sample: 1, unit: (m/s^2)^2}", Sensor::kAccel), InputError);
+}
+
+TEST(GaussMarkov, AutocovarianceIsExponentialAndStationary) {
+  const double sigma = 2e-4, time = 2500.0;
+  const auto process =
+      process_of("{process: gauss_markov, sigma: 2e-4, unit: m/s^2, correlation_time_s: 2500}", Sensor::kAccel);
+  for (const double lag : {1e-6, 0.01, 1.0, 400.0, 2500.0, 1e5}) {
+    const auto block = block_of(*process, lag);
+    EXPECT_NEAR((block.Phi * block.P)(0, 0), sigma * sigma * std::exp(-lag / time), 1e-15 * sigma * sigma) << lag;
+    EXPECT_NEAR((block.Phi * block.P * block.Phi + block.Q_d)(0, 0), sigma * sigma, 1e-15 * sigma * sigma) << lag;
+  }
+  // Q_d -> 2 beta sigma^2 dt (1 - beta dt): full precision where 1 - phi^2 would leave nine digits.
+  const double dt = 1e-6, beta = 1.0 / time;
+  const double expected = 2.0 * beta * sigma * sigma * dt * (1.0 - beta * dt);
+  EXPECT_NEAR(block_of(*process, dt).Q_d(0, 0), expected, 1e-13 * expected);
+}
+
+TEST(GaussMarkov, FirstOrderFormsAreThePapersAtTheModelsRate) {
+  const double sigma2 = 1e-8, beta = 0.10;
+  const auto form = [](const char* name, double rate) {
+    return process_of(
+        std::string("{process: gauss_markov, sigma: 1e-4, unit: m/s^2, correlation_time_s: 10, first_order: ") + name + "}",
+        Sensor::kAccel, rate);
+  };
+  for (const double rate : {1.0, 100.0}) {
+    const double dt = 1.0 / rate;
+    const auto table1 = block_of(*form("table1", rate), dt), section2e = block_of(*form("section2e", rate), dt);
+    EXPECT_NEAR(table1.Phi(0, 0), 1.0 - beta * dt, 1e-15);
+    EXPECT_NEAR(section2e.Phi(0, 0), 1.0 - beta * dt, 1e-15);
+    EXPECT_NEAR(table1.Q_d(0, 0), dt * dt * 2.0 * beta * sigma2, 1e-13 * dt * dt * sigma2);
+    EXPECT_NEAR(section2e.Q_d(0, 0), 2.0 * beta * sigma2, 1e-13 * sigma2);
+  }
+  // Over a longer interval: as many of those steps.
+  const auto process = form("section2e", 100.0);
+  double phi = 1.0, q = 0.0;
+  for (int k = 0; k < 50; ++k) {
+    phi *= 1.0 - beta * 0.01;
+    q = (1.0 - beta * 0.01) * (1.0 - beta * 0.01) * q + 2.0 * beta * sigma2;
+  }
+  EXPECT_NEAR(block_of(*process, 0.5).Phi(0, 0), phi, 1e-14);
+  EXPECT_NEAR(block_of(*process, 0.5).Q_d(0, 0), q, 1e-13 * q);
+}
+
+TEST(GaussMarkov, FirstOrderFormsSurviveWritingAndNeedARateThatCarriesThem) {
+  const std::string entry = "{process: gauss_markov, sigma: 1e-4, unit: m/s^2, correlation_time_s: 10, first_order: table1}";
+  const auto before = process_of(entry, Sensor::kAccel, 100.0);
+  const auto after = process_of(before->yaml(), Sensor::kAccel, 100.0);
+  EXPECT_NE(before->yaml().find("first_order: table1"), std::string::npos);
+  EXPECT_NEAR(block_of(*after, 0.01).Q_d(0, 0), block_of(*before, 0.01).Q_d(0, 0), 1e-14 * 1e-8);
+  EXPECT_THROW((void)process_of(entry, Sensor::kAccel), InputError);        // no rate: a step of what length?
+  EXPECT_THROW((void)process_of(entry, Sensor::kAccel, 0.05), InputError);  // 1 - beta dt is negative
+}
+
+TEST(RandomWalk, VarianceGrowsFromZeroWithTime) {
+  const auto process = process_of("{process: random_walk, density: 2, unit: deg/h/sqrt(h)}", Sensor::kGyro);
+  const double density = 2.0 * M_PI / 180.0 / 3600.0 / 60.0;
+  const auto block = block_of(*process, 1234.5);
+  EXPECT_EQ(block.P(0, 0), 0.0);
+  EXPECT_EQ(block.Phi(0, 0), 1.0);
+  EXPECT_NEAR(block.Q_d(0, 0), density * density * 1234.5, 1e-14 * density * density * 1234.5);
+}
+
+TEST(RandomConstant, StaysWhatItWas) {
+  const auto process = process_of("{process: random_constant, sigma: 1, unit: mg}", Sensor::kAccel);
+  const auto block = block_of(*process, 1e4);
+  EXPECT_EQ(block.Phi(0, 0), 1.0);
+  EXPECT_EQ(block.Q_d(0, 0), 0.0);
+  EXPECT_NEAR(block.P(0, 0), 9.80665e-3 * 9.80665e-3, 1e-18);
+}
+
+TEST(ScaleFactor, MultipliesItsOwnAxis) {
+  const auto process = process_of("{process: scale_factor, sigma: 300, unit: ppm}", Sensor::kGyro);
+  EXPECT_EQ(process->input(), noise::Input::kOwnAxis);
+  EXPECT_NEAR(block_of(*process, 1.0).P(0, 0), 9e-8, 1e-22);
+  const auto drifting = process_of("{process: scale_factor, sigma: 300, unit: ppm, correlation_time_s: 50}", Sensor::kGyro);
+  EXPECT_NEAR(block_of(*drifting, 50.0).Phi(0, 0), std::exp(-1.0), 1e-15);
+}
+
+TEST(Misalignment, IsTwoAnglesToTheOtherAxes) {
+  const auto angles = processes_of("{process: misalignment, sigma: 0.05, unit: deg}", Sensor::kAccel);
+  ASSERT_EQ(angles.size(), 2u);
+  EXPECT_EQ(angles[0]->input(), noise::Input::kNextAxis);
+  EXPECT_EQ(angles[1]->input(), noise::Input::kPrevAxis);
+  for (const auto& angle : angles) EXPECT_NEAR(std::sqrt(block_of(*angle, 1.0).P(0, 0)), 0.05 * M_PI / 180.0, 1e-18);
+}
+
+}  // namespace
+}  // namespace coast

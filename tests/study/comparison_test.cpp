@@ -1,0 +1,72 @@
+#include "coast/study/comparison.hpp"
+
+#include <gtest/gtest.h>
+
+#include "coast/geo/earth.hpp"
+#include "coast/geo/rotation.hpp"
+#include "coast/geo/units.hpp"
+
+namespace coast::study {
+namespace {
+
+const geo::GpsTime kStart = geo::GpsTime::from_week(2374, 1000.0);
+
+record::NavState standing(const geo::Geodetic& p, double s, const geo::Euler& attitude) {
+  record::NavState nav;
+  nav.t = kStart + s;
+  nav.r_eb_e = geo::ecef_from_geodetic(p);
+  nav.q_b_e = Eigen::Quaterniond(geo::C_n_e(p) * geo::dcm_from_euler(attitude));
+  return nav;
+}
+
+TEST(Comparison, ErrorIsEstimateMinusReferenceInNorthEastDown) {
+  const geo::Geodetic p{-0.6, 2.9, 120.0};
+  const record::NavState reference = standing(p, 0.0, {0.0, 0.0, geo::kPi - 1e-3});
+  record::TrajectoryEpoch estimate{standing(p, 0.0, {2e-3, -1e-3, -geo::kPi + 1e-3}), {}};
+  const Eigen::Vector3d offset(1.0, 2.0, -3.0);
+  estimate.nav.r_eb_e += geo::C_n_e(p) * offset;
+  estimate.nav.v_eb_e = geo::C_n_e(p) * Eigen::Vector3d(0.1, 0.2, 0.3);
+  const ErrorSample e = error_of(estimate, reference);
+  EXPECT_LE((e.position_n - offset).norm(), 1e-8);  // rounding of ECEF
+  EXPECT_LE((e.velocity_n - Eigen::Vector3d(0.1, 0.2, 0.3)).norm(), 1e-12);
+  // Yaw wraps: -pi + 1e-3 against pi - 1e-3 is +2e-3. Euler angles are differences of the files' angles.
+  EXPECT_NEAR(e.attitude.x(), 2e-3, 1e-10);
+  EXPECT_NEAR(e.attitude.y(), -1e-3, 1e-10);
+  EXPECT_NEAR(e.attitude.z(), 2e-3, 1e-10);
+}
+
+TEST(Comparison, TakesErrorsAtTheReferencesEpochsInTheOverlap) {
+  const geo::Geodetic p{0.8, 0.1, 300.0};
+  record::Trajectory reference;
+  reference.has_velocity = false;
+  for (const double s : {-1.0, 0.0, 0.35, 0.9, 1.0, 7.0}) reference.states.push_back(standing(p, s, {}));
+  Comparison comparison(reference);
+  const Eigen::Vector3d v(2.0, -1.0, 0.5);
+  for (int k = 0; k <= 10; ++k) {
+    record::TrajectoryEpoch epoch{standing(p, 0.1 * k, {}), {}};
+    epoch.nav.r_eb_e += geo::C_n_e(p) * v * (0.1 * k);
+    epoch.nav.v_eb_e = geo::C_n_e(p) * v;
+    comparison.add(epoch);
+  }
+  ASSERT_EQ(comparison.errors().size(), 4U);  // 0, 0.35, 0.9, 1.0
+  EXPECT_LE((comparison.errors()[1].position_n - 0.35 * v).norm(), 1e-8);
+  const ErrorSummary s = comparison.summary();
+  const double mean_square = (0.35 * 0.35 + 0.9 * 0.9 + 1.0) / 4.0;
+  EXPECT_NEAR(s.position_rms_m.x(), 2.0 * std::sqrt(mean_square), 1e-8);
+  EXPECT_NEAR(s.position_max_m.z(), 0.5, 1e-8);
+  EXPECT_FALSE(s.velocity_rms_mps.has_value());
+  EXPECT_TRUE(s.attitude_rms.has_value());
+}
+
+TEST(Comparison, LeverArmGoesFromTheEstimatesPointToTheReferences) {
+  const geo::Geodetic p{0.8, 0.1, 300.0};
+  const geo::Euler east{0.0, 0.0, geo::kPi / 2.0};  // forward is east, right is south
+  record::Trajectory reference;
+  reference.states = {standing(p, 0.0, east)};
+  Comparison comparison(reference, Eigen::Vector3d(1.0, 0.5, -0.25));
+  comparison.add({standing(p, 0.0, east), {}});
+  EXPECT_LE((comparison.errors().front().position_n - Eigen::Vector3d(-0.5, 1.0, -0.25)).norm(), 1e-8);
+}
+
+}  // namespace
+}  // namespace coast::study

@@ -1,0 +1,96 @@
+#include "coast/study/mission.hpp"
+
+#include <gtest/gtest.h>
+
+#include "coast/study/comparison.hpp"
+#include "simulated.hpp"
+
+namespace coast::study {
+namespace {
+
+double heading_error(const PreparedMission& mission, const record::Trajectory& truth) {
+  return error_of({mission.start().nav, {}}, truth.states.front()).attitude.z();
+}
+
+TEST(PreparedMission, RefinesTheStartFromTheData) {
+  const simulate::Scenario scenario = test::drive(360.0, 11);
+  simulate::SimulatedMission recording = simulate::simulate(scenario);
+  const record::Trajectory truth = recording.truth;
+  const PreparedMission mission(std::move(recording.imu), std::move(recording.gnss), test::setup_of(scenario), {});
+  EXPECT_LE(mission.start().nav.t - truth.states.front().t, 0.5);
+  // Smoothed heading after 170 s of driving with this IMU: sigma 0.02 deg, by the filter itself; five of them.
+  EXPECT_LE(std::abs(heading_error(mission, truth)), 1.8e-3);
+}
+
+TEST(PreparedMission, RefusesRecordingsThatDoNotOverlap) {
+  const simulate::Scenario scenario = test::drive(360.0, 1);
+  simulate::SimulatedMission recording = simulate::simulate(scenario);
+  for (record::GnssFix& fix : recording.gnss.fixes) fix.t = fix.t + 86400.0;
+  EXPECT_THROW(PreparedMission(std::move(recording.imu), std::move(recording.gnss), test::setup_of(scenario), {}), InputError);
+}
+
+TEST(PreparedMission, FindsTheTimeOffset) {
+  simulate::Scenario scenario = test::drive(360.0, 5);
+  scenario.gnss.time_offset = 0.080;
+  simulate::SimulatedMission recording = simulate::simulate(scenario);
+  study::Setup setup = test::setup_of(scenario);
+  setup.filter.auxiliary.time_offset_sd_s = 0.1;
+  const PreparedMission mission(std::move(recording.imu), std::move(recording.gnss), setup, {});
+  // 1 cm of white noise per fix and a few m/s^2 of speed changes: below 1 ms (METHODS: 0.8 ms detectable in 30 min of driving).
+  EXPECT_NEAR(mission.mission().time_offset_s, 0.080, 2e-3);
+}
+
+TEST(PreparedMission, LeverArmCheckFindsAMisclosure) {
+  const simulate::Scenario scenario = test::drive(360.0, 7);
+  simulate::SimulatedMission recording = simulate::simulate(scenario);
+  study::Setup setup = test::setup_of(scenario);
+  const Eigen::Vector3d wrong(0.15, -0.10, 0.0);
+  setup.lever_arm_b += wrong;
+  const PreparedMission mission(std::move(recording.imu), std::move(recording.gnss), setup, {});
+  const LeverArmCheck check = check_lever_arm(mission, 0.5, {});
+  for (int i = 0; i < 2; ++i) {
+    EXPECT_LE(std::abs(check.difference_m(i) + wrong(i)), 4.0 * check.sd_m(i)) << i;  // 4 sigma: one in 16000
+    EXPECT_LE(check.sd_m(i), 0.03) << i;                                              // else the sentence above says nothing
+  }
+}
+
+TEST(PreparedMission, BackwardFilterAgreesWithTheTruthAndLeavesTheRecordingAsItWas) {
+  const simulate::Scenario scenario = test::drive(360.0, 13);
+  simulate::SimulatedMission recording = simulate::simulate(scenario);
+  const record::Trajectory truth = recording.truth;
+  PreparedMission mission(std::move(recording.imu), std::move(recording.gnss), test::setup_of(scenario), {});
+  const Solution solution = solve(mission, mission.options(), true, {}, {});
+  const Eigen::Vector3d first = mission.mission().imu.samples.front().dtheta;
+  const geo::GpsTime middle = mission.start().nav.t + 100.0;
+  std::optional<estimate::FilterState> at_middle;
+  mission.run_backward(solution.forward.last,
+                       [&](const estimate::FilterState& state) {
+                         if (state.nav.t >= middle) at_middle = state;
+                       },
+                       {});
+  EXPECT_EQ(mission.mission().imu.samples.front().dtheta, first);
+  ASSERT_TRUE(at_middle.has_value());
+  const auto& states = truth.states;
+  const auto same =
+      std::find_if(states.begin(), states.end(), [&](const auto& nav) { return std::abs(nav.t - at_middle->nav.t) < 1e-6; });
+  ASSERT_NE(same, states.end());
+  const auto d = estimate::error_between(at_middle->nav, *same);
+  for (int i = 0; i < estimate::kNav; ++i)
+    EXPECT_LE(std::abs(d(i)), 4.5 * std::sqrt(at_middle->P(i, i))) << i;  // nine values: 4.5 sigma is one in 16000
+}
+
+TEST(NoiseFit, RecoversTheScaleOfStatedSigmas) {
+  simulate::Scenario scenario = test::drive(360.0, 17);
+  scenario.gnss.stated_sd = Eigen::Vector3d(0.005, 0.005, 0.04);  // true: 0.010, 0.010, 0.020
+  simulate::SimulatedMission recording = simulate::simulate(scenario);
+  const PreparedMission mission(std::move(recording.imu), std::move(recording.gnss), test::setup_of(scenario), {});
+  const estimate::NoiseFit fit =
+      mission.fit({.gnss_scale = true, .correlated_gnss = false, .imu_white_noise = false}, 300.0, {});
+  // 1500 fixes: the scale of 3000 horizontal innovations is known to 1/sqrt(2 * 3000) = 1.3 %, of 1500 vertical ones to 1.8 %.
+  EXPECT_NEAR(fit.adjustment.gnss_scale.horizontal, 2.0, 4.0 * 0.013 * 2.0);
+  EXPECT_NEAR(fit.adjustment.gnss_scale.vertical, 0.5, 4.0 * 0.018 * 0.5);
+  EXPECT_GT(fit.log_likelihood_after, fit.log_likelihood_before);
+}
+
+}  // namespace
+}  // namespace coast::study

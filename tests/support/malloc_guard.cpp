@@ -1,0 +1,38 @@
+#include "support/malloc_guard.hpp"
+
+#include <cstddef>
+
+namespace {
+thread_local long allocations_so_far = 0;
+}  // namespace
+
+#if defined(__GLIBC__) && !defined(__SANITIZE_ADDRESS__)
+// glibc's own entries stand behind ours; operator new and Eigen come through malloc.
+extern "C" {
+void* __libc_malloc(std::size_t size);
+void* __libc_calloc(std::size_t count, std::size_t size);
+void* __libc_realloc(void* old, std::size_t size);
+
+void* malloc(std::size_t size) noexcept {
+  ++allocations_so_far;
+  return __libc_malloc(size);
+}
+void* calloc(std::size_t count, std::size_t size) noexcept {
+  ++allocations_so_far;
+  return __libc_calloc(count, size);
+}
+void* realloc(void* old, std::size_t size) noexcept {
+  ++allocations_so_far;
+  return __libc_realloc(old, size);
+}
+}
+#endif
+
+namespace coast::test {
+
+MallocGuard::MallocGuard() : before_(allocations_so_far) {}
+long MallocGuard::allocations() const {
+  return allocations_so_far - before_;
+}
+
+}  // namespace coast::test
