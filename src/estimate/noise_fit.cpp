@@ -26,11 +26,10 @@ FilterOptions adjusted(const FilterOptions& options, const NoiseAdjustment& adju
 
 namespace {
 
-/// One free parameter: where it lives, its start and bounds (natural units; optimised as logarithm).
+/// One free parameter: where it lives and its bounds (natural units; optimised as logarithm).
 struct Parameter {
   std::string name;
   std::function<double&(NoiseAdjustment&)> value;
-  double start;
   double low;
   double high;
 };
@@ -38,20 +37,20 @@ struct Parameter {
 std::vector<Parameter> free_parameters(const NoiseFitChoice& choice, bool velocities) {
   std::vector<Parameter> p;
   if (choice.gnss_scale) {
-    p.push_back({"gnss_scale_horizontal", [](auto& a) -> double& { return a.gnss_scale.horizontal; }, 1.0, 0.02, 100.0});
-    p.push_back({"gnss_scale_vertical", [](auto& a) -> double& { return a.gnss_scale.vertical; }, 1.0, 0.02, 100.0});
+    p.push_back({"gnss_scale_horizontal", [](auto& a) -> double& { return a.gnss_scale.horizontal; }, 0.02, 100.0});
+    p.push_back({"gnss_scale_vertical", [](auto& a) -> double& { return a.gnss_scale.vertical; }, 0.02, 100.0});
     if (velocities)
-      p.push_back({"gnss_scale_velocity", [](auto& a) -> double& { return a.gnss_scale.velocity; }, 1.0, 0.02, 100.0});
+      p.push_back({"gnss_scale_velocity", [](auto& a) -> double& { return a.gnss_scale.velocity; }, 0.02, 100.0});
   }
   if (choice.correlated_gnss) {
     p.push_back(
-        {"correlated_horizontal_m", [](auto& a) -> double& { return a.correlated_gnss.horizontal_m; }, 0.01, 1e-4, 20.0});
-    p.push_back({"correlated_vertical_m", [](auto& a) -> double& { return a.correlated_gnss.vertical_m; }, 0.01, 1e-4, 20.0});
-    p.push_back({"correlated_time_s", [](auto& a) -> double& { return a.correlated_gnss.time_s; }, 10.0, 1.0, 600.0});
+        {"correlated_horizontal_m", [](auto& a) -> double& { return a.correlated_gnss.horizontal_m; }, 1e-4, 20.0});
+    p.push_back({"correlated_vertical_m", [](auto& a) -> double& { return a.correlated_gnss.vertical_m; }, 1e-4, 20.0});
+    p.push_back({"correlated_time_s", [](auto& a) -> double& { return a.correlated_gnss.time_s; }, 1.0, 600.0});
   }
   if (choice.imu_white_noise) {
-    p.push_back({"gyro_factor", [](auto& a) -> double& { return a.gyro_factor; }, 1.0, 0.05, 1000.0});
-    p.push_back({"accel_factor", [](auto& a) -> double& { return a.accel_factor; }, 1.0, 0.05, 1000.0});
+    p.push_back({"gyro_factor", [](auto& a) -> double& { return a.gyro_factor; }, 0.05, 1000.0});
+    p.push_back({"accel_factor", [](auto& a) -> double& { return a.accel_factor; }, 0.05, 1000.0});
   }
   return p;
 }
@@ -59,14 +58,21 @@ std::vector<Parameter> free_parameters(const NoiseFitChoice& choice, bool veloci
 /// Minus the mean log-likelihood of an innovation, as a function of the logarithms of the free parameters.
 class Objective {
  public:
+  /// @param fixed  what the parameters that are not free keep
   Objective(const Mission& mission, const noise::ImuErrorModel& model, const FilterOptions& options,
-            std::vector<Parameter> parameters, std::function<FilterState(const ForwardFilter&)> start)
-      : mission_(mission), model_(model), options_(options), parameters_(std::move(parameters)), start_(std::move(start)) {
+            std::vector<Parameter> parameters, const NoiseAdjustment& fixed,
+            std::function<FilterState(const ForwardFilter&)> start)
+      : mission_(mission),
+        model_(model),
+        options_(options),
+        parameters_(std::move(parameters)),
+        fixed_(fixed),
+        start_(std::move(start)) {
     options_.gate_probability = 0.0;
   }
 
   [[nodiscard]] NoiseAdjustment at(const Eigen::VectorXd& theta) const {
-    NoiseAdjustment adjustment;
+    NoiseAdjustment adjustment = fixed_;
     for (std::size_t i = 0; i < parameters_.size(); ++i)
       parameters_[i].value(adjustment) = std::exp(theta(static_cast<Eigen::Index>(i)));
     return adjustment;
@@ -79,44 +85,55 @@ class Objective {
     return filter.run(start_(filter), {});
   }
 
-  // A parameter set that breaks the filter is worse than any other, not an error.
+  // A parameter set that breaks the filter is worse than any other, not an error; finite, so that a gradient remains.
   [[nodiscard]] double value(const Eigen::VectorXd& theta) const {
     try {
       const FilterResult result = run(at(theta));
       return -result.log_likelihood / static_cast<double>(std::max<std::size_t>(result.innovations.size(), 1));
     } catch (const NumericalError&) {
-      return std::numeric_limits<double>::max();
+      constexpr double kBroken = 1e6;
+      return kBroken;
     }
   }
 
+  // Forward differences: their truncation moves the optimum by half a step, 0.05 % of a parameter.
   double operator()(const Eigen::VectorXd& theta, Eigen::VectorXd& gradient) const {
-    constexpr double kStep = 0.02;  // of a logarithm: 2 %; truncation 1e-4 of the curvature, far above the rounding of a pass
-    std::vector<double> values(2 * parameters_.size() + 1);
-    tbb::parallel_for(std::size_t{0}, values.size(), [&](std::size_t k) {
-      Eigen::VectorXd moved = theta;
-      if (k > 0) moved(static_cast<Eigen::Index>((k - 1) / 2)) += (k % 2 == 1 ? kStep : -kStep);
-      values[k] = value(moved);
-    });
-    for (Eigen::Index i = 0; i < theta.size(); ++i) {
-      const auto k = static_cast<std::size_t>(2 * i + 1);
-      gradient(i) = (values[k] - values[k + 1]) / (2.0 * kStep);
-      curvature_.resize(theta.size());
-      curvature_(i) = (values[k] - 2.0 * values[0] + values[k + 1]) / (kStep * kStep);
-    }
-    return values[0];
+    constexpr double kStep = 1e-3;  // of a logarithm; the rounding of a pass is 1e-11 of the value
+    const Eigen::VectorXd values = values_at(theta, {kStep});
+    gradient = (values.tail(theta.size()).array() - values(0)) / kStep;
+    return values(0);
+  }
+
+  // Diagonal of the second derivatives.
+  [[nodiscard]] Eigen::VectorXd curvature(const Eigen::VectorXd& theta) const {
+    constexpr double kStep = 0.02;  // truncation 1e-4 of the curvature, far above the rounding of a pass
+    const Eigen::Index n = theta.size();
+    const Eigen::VectorXd values = values_at(theta, {kStep, -kStep});
+    return (values.segment(1, n) + values.tail(n) - Eigen::VectorXd::Constant(n, 2.0 * values(0))) / (kStep * kStep);
   }
 
   [[nodiscard]] const std::vector<Parameter>& parameters() const { return parameters_; }
-  [[nodiscard]] const Eigen::VectorXd& curvature() const { return curvature_; }
   [[nodiscard]] int evaluations() const { return evaluations_; }
 
  private:
+  // At the point itself, then with each parameter moved by the first step, then by the second.
+  [[nodiscard]] Eigen::VectorXd values_at(const Eigen::VectorXd& theta, const std::vector<double>& steps) const {
+    const auto n = static_cast<std::size_t>(theta.size());
+    Eigen::VectorXd values(static_cast<Eigen::Index>(1 + n * steps.size()));
+    tbb::parallel_for(std::size_t{0}, static_cast<std::size_t>(values.size()), [&](std::size_t k) {
+      Eigen::VectorXd moved = theta;
+      if (k > 0) moved(static_cast<Eigen::Index>((k - 1) % n)) += steps[(k - 1) / n];
+      values(static_cast<Eigen::Index>(k)) = value(moved);
+    });
+    return values;
+  }
+
   const Mission& mission_;
   const noise::ImuErrorModel& model_;
   FilterOptions options_;
   std::vector<Parameter> parameters_;
+  NoiseAdjustment fixed_;
   std::function<FilterState(const ForwardFilter&)> start_;
-  mutable Eigen::VectorXd curvature_;  ///< diagonal, at the last point with a gradient
   mutable std::atomic<int> evaluations_{0};
 };
 
@@ -157,16 +174,46 @@ Eigen::VectorXd minimise(const Objective& objective, Eigen::VectorXd theta, cons
   return best;
 }
 
+// What the optimum gains over the stated noise, and how well it is known.
+void describe(const Objective& objective, const NoiseAdjustment& as_stated, const Eigen::VectorXd& theta, NoiseFit& fit) {
+  const FilterResult stated = objective.run(as_stated);
+  const Eigen::VectorXd curvature = objective.curvature(theta);
+  fit.innovations = stated.innovations.size();
+  fit.log_likelihood_before = stated.log_likelihood;
+  fit.log_likelihood_after = objective.run(fit.adjustment).log_likelihood;
+  fit.evaluations += objective.evaluations();
+  fit.names.clear();
+  fit.log_sd.clear();
+  for (std::size_t i = 0; i < objective.parameters().size(); ++i) {
+    fit.names.push_back(objective.parameters()[i].name);
+    const double information = curvature(static_cast<Eigen::Index>(i)) * static_cast<double>(fit.innovations);
+    fit.log_sd.push_back(information > 0.0 ? 1.0 / std::sqrt(information) : std::numeric_limits<double>::infinity());
+  }
+}
+
 }  // namespace
 
+NoiseAdjustment starting_point(const FilterOptions& options, const NoiseFitChoice& choice) {
+  NoiseAdjustment start{options.gnss_scale, options.auxiliary.correlated_gnss};
+  CorrelatedGnss& correlated = start.correlated_gnss;
+  if (choice.correlated_gnss && !(correlated.horizontal_m > 0.0 || correlated.vertical_m > 0.0))
+    correlated = {.horizontal_m = 0.01, .vertical_m = 0.01, .time_s = 10.0};
+  return start;
+}
+
 NoiseFit fit_noise(const Mission& mission, const noise::ImuErrorModel& model, const FilterOptions& options,
-                   const NoiseFitChoice& choice, const std::function<FilterState(const ForwardFilter&)>& start,
+                   const NoiseFitChoice& choice, const NoiseAdjustment& from,
+                   const std::function<FilterState(const ForwardFilter&)>& start,
                    const std::function<void(double)>& progress) {
   const bool velocities = options.use_gnss_velocity &&
                           std::ranges::any_of(mission.gnss.fixes, [](const auto& fix) { return fix.velocity.has_value(); });
   const std::vector<Parameter> parameters = free_parameters(choice, velocities);
   Eigen::VectorXd theta(static_cast<Eigen::Index>(parameters.size()));
-  for (std::size_t i = 0; i < parameters.size(); ++i) theta(static_cast<Eigen::Index>(i)) = std::log(parameters[i].start);
+  for (std::size_t i = 0; i < parameters.size(); ++i) {
+    NoiseAdjustment at = from;
+    const Parameter& p = parameters[i];
+    theta(static_cast<Eigen::Index>(i)) = std::log(std::clamp(p.value(at), p.low, p.high));
+  }
 
   record::GnssRecording clean = mission.gnss;
   const Mission cleaned{mission.imu,         clean,
@@ -175,23 +222,10 @@ NoiseFit fit_noise(const Mission& mission, const noise::ImuErrorModel& model, co
                         mission.standstill,  mission.earth_rate};
   NoiseFit fit;
   for (int round = 0; round < 2; ++round) {
-    const Objective objective(cleaned, model, options, parameters, start);
+    const Objective objective(cleaned, model, options, parameters, from, start);
     theta = minimise(objective, theta, progress);
-    Eigen::VectorXd gradient(theta.size());
-    const double value = objective(theta, gradient);
     fit.adjustment = objective.at(theta);
-    const FilterResult stated = objective.run(NoiseAdjustment{});
-    fit.innovations = stated.innovations.size();
-    fit.log_likelihood_before = stated.log_likelihood;
-    fit.log_likelihood_after = -value * static_cast<double>(fit.innovations);
-    fit.evaluations += objective.evaluations();
-    fit.names.clear();
-    fit.log_sd.clear();
-    for (std::size_t i = 0; i < parameters.size(); ++i) {
-      fit.names.push_back(parameters[i].name);
-      const double information = objective.curvature()(static_cast<Eigen::Index>(i)) * static_cast<double>(fit.innovations);
-      fit.log_sd.push_back(information > 0.0 ? 1.0 / std::sqrt(information) : std::numeric_limits<double>::infinity());
-    }
+    describe(objective, {options.gnss_scale, options.auxiliary.correlated_gnss}, theta, fit);
     if (round == 1) break;
     // What the gate of the fitted filter refuses must not have shaped the fit.
     const ForwardFilter filter(cleaned, adjusted(model, fit.adjustment), adjusted(options, fit.adjustment));

@@ -69,11 +69,13 @@ PreparedMission::PreparedMission(record::ImuRecording imu, record::GnssRecording
     ins::compensate_chebyshev(imu_);
     mission_->increments = ins::IncrementKind::kCompensated;
   }
-  if (setup_.start) return;
-  run_back_to_first_epoch();
-  if (setup_.noise_fit) fit_and_adopt(progress);
-  refine_start(progress);
-  refine_antenna(progress);
+  if (!setup_.start) run_back_to_first_epoch();
+  if (setup_.noise_fit) {
+    fit_and_adopt(progress);
+  } else {
+    refine_start(progress);
+    refine_antenna(progress);
+  }
 }
 
 // Noise comes first: with noise stated far too small neither the gate nor an offset means anything. The second fit starts
@@ -83,12 +85,13 @@ void PreparedMission::fit_and_adopt(const Progress& progress) {
   const estimate::FilterOptions stated = setup_.filter;
   setup_.filter.gate_probability = 0.0;
   refine_start(progress);
-  for (int round = 0; round < 2; ++round) {
+  estimate::NoiseAdjustment from = estimate::starting_point(stated, *setup_.noise_fit);
+  for (const double window : {kRefineWindow, kFitWindow}) {
     setup_.model = stated_model;
     setup_.filter = stated;
-    noise_fit_ = fit(*setup_.noise_fit, kFitWindow, progress);
+    noise_fit_ = fit(*setup_.noise_fit, from, window, progress);
     adopt(*noise_fit_);
-    if (round > 0) return;
+    from = noise_fit_->adjustment;
     refine_start(progress);
     refine_antenna(progress);
   }
@@ -172,6 +175,7 @@ void PreparedMission::run_back_to_first_epoch() {
 // Gauss-Newton on the start: the filter is linearised about a start that the data themselves have corrected. The uncertainty
 // stays that of the alignment, so no fix counts twice for more than its linearisation.
 void PreparedMission::refine_start(const Progress& progress) {
+  if (setup_.start) return;  // what the user gave stays
   constexpr int kRounds = 4;
   const estimate::ForwardFilter filter(*mission_, setup_.model, setup_.filter);
   for (int round = 0; round < kRounds; ++round) {
@@ -194,8 +198,8 @@ void PreparedMission::adopt(const estimate::NoiseFit& fit) {
   setup_.filter = estimate::adjusted(setup_.filter, fit.adjustment);
 }
 
-estimate::NoiseFit PreparedMission::fit(const estimate::NoiseFitChoice& choice, double longest_s,
-                                        const Progress& progress) const {
+estimate::NoiseFit PreparedMission::fit(const estimate::NoiseFitChoice& choice, const estimate::NoiseAdjustment& from,
+                                        double longest_s, const Progress& progress) const {
   record::ImuRecording imu;
   imu.source = imu_.source;
   imu.rate_hz = imu_.rate_hz;
@@ -211,7 +215,7 @@ estimate::NoiseFit PreparedMission::fit(const estimate::NoiseFitChoice& choice, 
                                  mission_->standstill,
                                  mission_->earth_rate};
   return estimate::fit_noise(
-      window, setup_.model, setup_.filter, choice,
+      window, setup_.model, setup_.filter, choice, from,
       [this](const estimate::ForwardFilter& filter) { return start_state(filter); }, stage(progress, "fitting the noise"));
 }
 

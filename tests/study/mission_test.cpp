@@ -85,7 +85,7 @@ TEST(NoiseFit, RecoversTheScaleOfStatedSigmas) {
   simulate::SimulatedMission recording = simulate::simulate(scenario);
   const PreparedMission mission(std::move(recording.imu), std::move(recording.gnss), test::setup_of(scenario), {});
   const estimate::NoiseFit fit =
-      mission.fit({.gnss_scale = true, .correlated_gnss = false, .imu_white_noise = false}, 300.0, {});
+      mission.fit({.gnss_scale = true, .correlated_gnss = false, .imu_white_noise = false}, {}, 300.0, {});
   // 1500 fixes: the scale of 3000 horizontal innovations is known to 1/sqrt(2 * 3000) = 1.3 %, of 1500 vertical ones to 1.8 %.
   EXPECT_NEAR(fit.adjustment.gnss_scale.horizontal, 2.0, 4.0 * 0.013 * 2.0);
   EXPECT_NEAR(fit.adjustment.gnss_scale.vertical, 0.5, 4.0 * 0.018 * 0.5);

@@ -6,7 +6,7 @@ namespace {
 thread_local long allocations_so_far = 0;
 }  // namespace
 
-#if defined(__GLIBC__) && !defined(__SANITIZE_ADDRESS__)
+#ifdef COAST_COUNT_ALLOCATIONS
 // glibc's own entries stand behind ours; operator new and Eigen come through malloc.
 extern "C" {
 void* __libc_malloc(std::size_t size);
@@ -29,6 +29,14 @@ void* realloc(void* old, std::size_t size) noexcept {
 #endif
 
 namespace coast::test {
+
+bool MallocGuard::counts() {
+#ifdef COAST_COUNT_ALLOCATIONS
+  return true;
+#else
+  return false;
+#endif
+}
 
 MallocGuard::MallocGuard() : before_(allocations_so_far) {}
 long MallocGuard::allocations() const {

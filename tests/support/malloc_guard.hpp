@@ -9,6 +9,7 @@ class MallocGuard {
  public:
   MallocGuard();
   [[nodiscard]] long allocations() const;
+  [[nodiscard]] static bool counts();  ///< not under the sanitizers
 
  private:
   long before_;

@@ -46,7 +46,7 @@ struct VehicleConstraints {
   std::optional<NonHolonomic> non_holonomic;
   std::optional<double> zero_velocity_sd_mps;
   double interval_s = 0.5;     ///< at most one of each per interval: slips last, they are not new every sample
-  double min_speed_mps = 0.5;  ///< below it only standstill says something
+  double min_speed_mps = 0.2;  ///< below it only standstill says something
 };
 
 struct FilterOptions {

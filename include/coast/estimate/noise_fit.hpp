@@ -17,7 +17,7 @@ struct NoiseAdjustment {
   double accel_factor = 1.0;  ///< on the accelerometer's
 };
 
-/// Which parts are free; the others keep the value of the start.
+/// Which parts are free.
 struct NoiseFitChoice {
   bool gnss_scale = true;
   bool correlated_gnss = true;
@@ -38,13 +38,18 @@ struct NoiseFit {
 [[nodiscard]] noise::ImuErrorModel adjusted(const noise::ImuErrorModel& model, const NoiseAdjustment& adjustment);
 [[nodiscard]] FilterOptions adjusted(const FilterOptions& options, const NoiseAdjustment& adjustment);
 
+/// Where a first search begins: the noise of `options`, with a small correlated error where that is free and none is stated.
+[[nodiscard]] NoiseAdjustment starting_point(const FilterOptions& options, const NoiseFitChoice& choice);
+
 /// Maximum likelihood of the innovations (prediction-error decomposition; Harvey 1989, section 3.4) over the logarithms of the
-/// free parameters, by L-BFGS-B with central differences. The gate is open while fitting: what the final filter then refuses
+/// free parameters, by L-BFGS-B with forward differences. The gate is open while fitting: what the final filter then refuses
 /// is left out and the fit repeated once.
+/// @param from   where the search begins; what is not free keeps its value
 /// @param start  state at the first epoch, covariance from ForwardFilter::initial_state
 /// @throws NumericalError  the filter fails at the start values
 [[nodiscard]] NoiseFit fit_noise(const Mission& mission, const noise::ImuErrorModel& model, const FilterOptions& options,
-                                 const NoiseFitChoice& choice, const std::function<FilterState(const ForwardFilter&)>& start,
+                                 const NoiseFitChoice& choice, const NoiseAdjustment& from,
+                                 const std::function<FilterState(const ForwardFilter&)>& start,
                                  const std::function<void(double)>& progress = {});
 
 }  // namespace coast::estimate

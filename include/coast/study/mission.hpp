@@ -32,7 +32,8 @@ struct Setup {
 /// A mission in body axes, aligned. Owns its recordings.
 class PreparedMission {
  public:
-  /// Compensates, finds standstill, aligns and refines the start: from where alignment succeeded the
+  /// Compensates, finds standstill, fits the noise where the setup asks for it, aligns and refines the start (a given start is
+  /// taken as it is): from where alignment succeeded the
   /// filter runs back to the first epoch, then the first minutes are smoothed and the start taken from there until it rests.
   /// @throws InputError  IMU and GNSS do not overlap in time  @throws NumericalError  the alignment fails
   PreparedMission(record::ImuRecording imu, record::GnssRecording gnss, Setup setup, const Progress& progress);
@@ -49,9 +50,9 @@ class PreparedMission {
   [[nodiscard]] estimate::FilterState start_state(const estimate::ForwardFilter& filter) const;
   /// Takes noise as fitted from here on.
   void adopt(const estimate::NoiseFit& fit);
-  /// Fits noise over at most the first `longest_s` seconds.
-  [[nodiscard]] estimate::NoiseFit fit(const estimate::NoiseFitChoice& choice, double longest_s,
-                                       const Progress& progress) const;
+  /// Fits noise over at most the first `longest_s` seconds, the search beginning at `from`.
+  [[nodiscard]] estimate::NoiseFit fit(const estimate::NoiseFitChoice& choice, const estimate::NoiseAdjustment& from,
+                                       double longest_s, const Progress& progress) const;
 
   /// Filters backward from the far end, started from `end` with the start's uncertainty; delivers states in forward time
   /// (from last to first) before each knot's updates. The recordings are reversed in place meanwhile.
