@@ -164,19 +164,28 @@ std::vector<StudiedOutage> studied_outages(const Scenario& scenario, const Motio
   return outages;
 }
 
-SimulatedMission simulate(const Scenario& scenario, int threads) {
-  const AnalyticTrajectory motion = make_motion(scenario.kind, scenario.motion);
-  SimulatedMission mission;
-  mission.outages = studied_outages(scenario, motion.plan());
+ErrorFreeMission::ErrorFreeMission(const Scenario& scenario, int threads)
+    : motion_(make_motion(scenario.kind, scenario.motion)),
+      start_(scenario.start),
+      gnss_(scenario.gnss),
+      outages_(studied_outages(scenario, motion_.plan())) {
   ImuSampling sampling;
   sampling.start = scenario.start;
   sampling.rate_hz = scenario.imu_rate_hz;
   const ImuInstallation installation{Eigen::Vector3d::Zero(), ins::C_s_b(scenario.mounting).transpose()};
-  mission.imu = true_increments(motion, sampling, installation, threads);
-  mission.truth = true_states(motion, mission.imu, scenario.start, threads);
-  if (scenario.error_model) mission.imu = with_errors(std::move(mission.imu), *scenario.error_model, scenario.seed);
-  mission.gnss = gnss_fixes(motion, scenario.start, scenario.gnss, scenario.seed);
-  return mission;
+  increments_ = true_increments(motion_, sampling, installation, threads);
+  truth_ = true_states(motion_, increments_, scenario.start, threads);
+}
+
+ErrorFreeMission::Recordings ErrorFreeMission::recorded(const std::optional<noise::ImuErrorModel>& model,
+                                                        std::uint64_t seed) const {
+  return {model ? with_errors(increments_, *model, seed) : increments_, gnss_fixes(motion_, start_, gnss_, seed)};
+}
+
+SimulatedMission simulate(const Scenario& scenario, int threads) {
+  const ErrorFreeMission error_free(scenario, threads);
+  ErrorFreeMission::Recordings recordings = error_free.recorded(scenario.error_model, scenario.seed);
+  return {std::move(recordings.imu), std::move(recordings.gnss), error_free.truth(), error_free.outages()};
 }
 
 }  // namespace coast::simulate

@@ -76,6 +76,41 @@ TEST(Scenario, SameSeedSameBytesOtherSeedOtherErrors) {
   }
 }
 
+// What an ensemble of seeds relies on: the error-free part is shared, and GNSS errors do not depend on the IMU's error model.
+TEST(ErrorFreeMission, GivesTheRecordingsOfSimulateAndPairsThem) {
+  const std::string base =
+      "schema: coast.scenario/1\n"
+      "trajectory: {kind: pedestrian, duration_s: 150, static_s: 40, origin_deg_m: [10, 20, 30]}\n"
+      "imu: {rate_hz: 20}\ngnss: {sd_m: [0.1, 0.1, 0.1]}\nseed: 4\n";
+  Scenario scenario = parse(base);
+  const std::string white = "{process: white_noise, density: 0.1, unit: deg/sqrt(h)}";
+  const auto model_with = [](const std::string& gyro) {
+    return noise::ImuErrorModel::from(io::parse_yaml(
+        "schema: coast.imu_error_model/1\nsensor: test\ngyro: {all: [" + gyro + "]}\naccel: {all: []}\n", "model.yaml"));
+  };
+  scenario.error_model = model_with(white + ", {process: random_constant, sigma: 5, unit: deg/h}");
+  const SimulatedMission whole = simulate(scenario);
+  const ErrorFreeMission error_free(scenario);
+  const auto same = error_free.recorded(scenario.error_model, 4);
+  const auto white_alone = error_free.recorded(model_with(white), 4);
+  const auto no_errors = error_free.recorded(std::nullopt, 4);
+  ASSERT_EQ(whole.imu.samples.size(), same.imu.samples.size());
+  const Eigen::Vector3d bias =  // constant over the recording, so it is what tells the two models apart in every sample
+      (whole.imu.samples[0].dtheta - white_alone.imu.samples[0].dtheta) / whole.imu.samples[0].dt;
+  EXPECT_GT(bias.norm(), 0.0);
+  for (std::size_t k = 0; k < whole.imu.samples.size(); ++k) {
+    EXPECT_EQ(whole.imu.samples[k].dtheta, same.imu.samples[k].dtheta);
+    EXPECT_NE(white_alone.imu.samples[k].dtheta, no_errors.imu.samples[k].dtheta);
+    const Eigen::Vector3d difference = whole.imu.samples[k].dtheta - white_alone.imu.samples[k].dtheta;
+    EXPECT_LT((difference - bias * whole.imu.samples[k].dt).norm(), 1e-15);  // rounding of increments below 1 rad
+  }
+  for (std::size_t k = 0; k < whole.gnss.fixes.size(); ++k) {
+    EXPECT_EQ(whole.gnss.fixes[k].r_ea_e, same.gnss.fixes[k].r_ea_e);
+    EXPECT_EQ(whole.gnss.fixes[k].r_ea_e, white_alone.gnss.fixes[k].r_ea_e);
+  }
+  EXPECT_EQ(whole.truth.states.back().r_eb_e, error_free.truth().states.back().r_eb_e);
+}
+
 TEST(Scenario, NamesWhatIsWrong) {
   EXPECT_EQ(message_of(kMinimal), "accepted");
   const auto replaced = [](std::string from, const std::string& to) {

@@ -86,6 +86,34 @@ struct SimulatedMission {
 /// @throws InputError  a manoeuvre does not occur in the motion (lists those that do)
 [[nodiscard]] std::vector<StudiedOutage> studied_outages(const Scenario& scenario, const MotionPlan& plan);
 
+/// The part of a scenario that no seed changes (motion, error-free increments, true states), computed once for many seeds.
+class ErrorFreeMission {
+ public:
+  /// @param threads  at least 1; the same bytes for any number
+  /// @throws InputError  as `studied_outages`
+  explicit ErrorFreeMission(const Scenario& scenario, int threads = 1);
+
+  struct Recordings {
+    record::ImuRecording imu;  ///< sensor axes
+    record::GnssRecording gnss;
+  };
+  /// What the sensors record. May be called from several threads at a time.
+  /// @param model  absent: an error-free IMU  @param seed  in place of the scenario's
+  [[nodiscard]] Recordings recorded(const std::optional<noise::ImuErrorModel>& model, std::uint64_t seed) const;
+
+  [[nodiscard]] const record::Trajectory& truth() const { return truth_; }
+  [[nodiscard]] const std::vector<StudiedOutage>& outages() const { return outages_; }
+
+ private:
+  AnalyticTrajectory motion_;
+  geo::GpsTime start_;
+  GnssOptions gnss_;
+  std::vector<StudiedOutage> outages_;
+  record::ImuRecording increments_;
+  record::Trajectory truth_;
+};
+
+/// One recording: the scenario's error model, the scenario's seed.
 /// @param threads  at least 1; the same bytes for any number
 /// @throws InputError  as `studied_outages`
 [[nodiscard]] SimulatedMission simulate(const Scenario& scenario, int threads = 1);
