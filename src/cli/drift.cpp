@@ -2,20 +2,15 @@
 
 #include <algorithm>
 
-namespace coast::cli {
+#include "coast/study/paired.hpp"
 
-double quantile(std::vector<double> values, double p) {
-  std::ranges::sort(values);
-  const double at = p * static_cast<double>(values.size() - 1);
-  const auto low = static_cast<std::size_t>(at);
-  const auto high = std::min(low + 1, values.size() - 1);
-  return values[low] + (at - static_cast<double>(low)) * (values[high] - values[low]);
-}
+namespace coast::cli {
 
 namespace {
 
 Drift drift_of(const std::vector<double>& values) {
-  return {quantile(values, 0.5), quantile(values, 0.68), quantile(values, 0.95), quantile(values, 1.0)};
+  return {study::quantile(values, 0.5), study::quantile(values, 0.68), study::quantile(values, 0.95),
+          study::quantile(values, 1.0)};
 }
 
 DriftRow row_of(const std::vector<const study::OutageResult*>& outages) {
@@ -60,6 +55,10 @@ std::vector<DriftRow> drift_table(const std::vector<study::OutageResult>& outage
   std::vector<DriftRow> rows;
   for (const auto& group : groups) rows.push_back(row_of(group));
   return rows;
+}
+
+nlohmann::ordered_json drift_json(const Drift& drift) {
+  return {{"median_m", drift.median}, {"p68_m", drift.p68}, {"p95_m", drift.p95}, {"max_m", drift.max}};
 }
 
 }  // namespace coast::cli

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <nlohmann/json.hpp>
 #include <vector>
 
 #include "coast/study/outage.hpp"
@@ -26,7 +27,7 @@ struct DriftRow {
 
 /// One row per duration, in order of appearance. Outages without a smoothed solution are left out.
 [[nodiscard]] std::vector<DriftRow> drift_table(const std::vector<study::OutageResult>& outages);
-/// Quantile by linear interpolation between order statistics. @param values not empty
-[[nodiscard]] double quantile(std::vector<double> values, double p);
+/// A drift of summary.json and outage.json, metres.
+[[nodiscard]] nlohmann::ordered_json drift_json(const Drift& drift);
 
 }  // namespace coast::cli

@@ -50,8 +50,9 @@ int run(int argc, char** argv) {
   simulate->callback([&] { coast::cli::simulate(input, seed, common); });
 
   auto* outage =
-      subcommand(app, "outage", "outages x error models -> drift tables and figures", "coast outage study.yaml", common);
-  outage->add_option("study", input, "study.yaml")->required();
+      subcommand(app, "outage", "outages x error models -> drift tables and figures, of a recording or of simulated seeds",
+                 "coast outage configs/studies/straight_130s.yaml --out study", common);
+  outage->add_option("study", input, "study.yaml: run and sweep, or scenario and seeds")->required();
   outage->callback([&] { coast::cli::outage(input, common); });
 
   auto* compare = subcommand(app, "compare", "two trajectories: N, E, D and attitude differences, first minus second",

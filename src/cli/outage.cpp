@@ -1,67 +1,35 @@
 #include <fmt/format.h>
 
-#include <algorithm>
-#include <cmath>
 #include <nlohmann/json.hpp>
 
 #include "coast/io/writers.hpp"
-#include "coast/io/yaml.hpp"
 #include "coast/record/error.hpp"
-#include "coast/report/panels.hpp"
 #include "coast/report/render.hpp"
 #include "commands.hpp"
 #include "drift.hpp"
 #include "load.hpp"
+#include "outage_page.hpp"
 #include "progress.hpp"
-#include "run_config.hpp"
+#include "study_config.hpp"
 
 namespace coast::cli {
 
 namespace {
 
-struct Model {
-  std::string name;
-  noise::ImuErrorModel model;
-};
+using Json = nlohmann::ordered_json;
 
-/// study.yaml: a run, a sweep, and the error models to be compared in it.
-struct StudyConfig {
-  RunConfig run;
-  study::OutageSweep sweep;
-  std::vector<Model> models;
-};
-
-StudyConfig read_study(const std::filesystem::path& file) {
-  const config::Node root = io::load_yaml(file);
-  static_cast<void>(root.text("schema", "coast.study/1"));
-  StudyConfig study;
-  study.run = read_run_config(root.at("run").path());
-  study.sweep = sweep_from(root.at("sweep"));
-  if (const auto models = root.find("error_models")) {
-    for (const config::Node& item : models->items())
-      study.models.push_back({item.at("name").text(), noise::ImuErrorModel::from(io::load_yaml(item.at("file").path()))});
-  } else {
-    study.models.push_back({study.run.setup.model.sensor_name(), study.run.setup.model});
-  }
-  root.refuse_unasked();
-  return study;
-}
-
-std::vector<study::OutageResult> run_model(const StudyConfig& config, const Model& model, const study::Progress& progress) {
+std::vector<study::OutageResult> run_model(const SweepStudy& config, const study::NamedModel& model,
+                                           const study::Progress& progress) {
   study::Setup setup = config.run.setup;
   setup.model = model.model;
   Recordings recordings = load(config.run);
   if (config.run.start) setup.start = start_of(*config.run.start, recordings.gnss.fixes.front().t);
   const study::PreparedMission mission(std::move(recordings.imu), std::move(recordings.gnss), std::move(setup), progress);
-  record::Trajectory gap_free;
+  study::GapFreeReference gap_free;
   study::SolutionOutputs outputs;
-  constexpr double kInterval = 0.1;  // s
-  outputs.smoothed = [&](const record::TrajectoryEpoch& epoch) {
-    if (gap_free.states.empty() || epoch.nav.t - gap_free.states.back().t >= kInterval - 1e-6)
-      gap_free.states.push_back(epoch.nav);
-  };
+  outputs.smoothed = [&](const record::TrajectoryEpoch& epoch) { gap_free.add(epoch); };
   const study::Solution solution = study::solve(mission, mission.options(), true, outputs, progress);
-  const record::Trajectory& truth = recordings.reference ? *recordings.reference : gap_free;
+  const record::Trajectory& truth = recordings.reference ? *recordings.reference : gap_free.trajectory();
   const Eigen::Vector3d arm = recordings.reference ? config.run.reference_lever_arm_b : Eigen::Vector3d::Zero();
   const auto outages = study::outages_of(config.sweep, mission.start().nav.t, mission.mission().imu.samples.back().t);
   if (outages.empty())
@@ -73,40 +41,7 @@ std::vector<study::OutageResult> run_model(const StudyConfig& config, const Mode
                             });
 }
 
-/// Mean of the logarithm of the ratio second : first of the largest horizontal error, outage by outage, with its 95 % interval.
-struct PairedRatio {
-  double ratio = 1.0;
-  double low = 1.0;
-  double high = 1.0;
-};
-
-PairedRatio paired_ratio(const std::vector<study::OutageResult>& first, const std::vector<study::OutageResult>& second,
-                         double duration_s, bool smoothed) {
-  std::vector<double> logs;
-  for (std::size_t i = 0; i < std::min(first.size(), second.size()); ++i) {
-    if (first[i].outage.duration_s != duration_s) continue;
-    const auto error = [&](const study::OutageResult& o) {
-      return smoothed ? o.smoothed->horizontal_max_m : o.forward.horizontal_max_m;
-    };
-    if (error(first[i]) > 0.0 && error(second[i]) > 0.0) logs.push_back(std::log(error(second[i]) / error(first[i])));
-  }
-  const auto n = static_cast<double>(logs.size());
-  if (n < 2.0) return {};
-  double mean = 0.0;
-  double square = 0.0;
-  for (const double x : logs) mean += x / n;
-  for (const double x : logs) square += (x - mean) * (x - mean) / (n - 1.0);
-  const double half = 1.96 * std::sqrt(square / n);
-  return {std::exp(mean), std::exp(mean - half), std::exp(mean + half)};
-}
-
-using Json = nlohmann::ordered_json;
-
-Json drift_json(const Drift& d) {
-  return {{"median_m", d.median}, {"p68_m", d.p68}, {"p95_m", d.p95}, {"max_m", d.max}};
-}
-
-Json model_json(const Model& model, const std::vector<study::OutageResult>& results) {
+Json model_json(const study::NamedModel& model, const std::vector<study::OutageResult>& results) {
   Json j;
   j["error_model"] = model.name;
   for (const DriftRow& row : drift_table(results))
@@ -118,49 +53,110 @@ Json model_json(const Model& model, const std::vector<study::OutageResult>& resu
   return j;
 }
 
-coast::report::Section drift_section(const Model& model, const std::vector<study::OutageResult>& results, std::size_t number) {
-  namespace page = coast::report;
-  page::Section section;
-  section.id = "model-" + std::to_string(number);
-  section.title = model.name;
-  page::Table table;
-  table.id = section.id + "-table";
-  table.title = "Largest horizontal error of an outage";
-  table.columns = {{"duration", "s"},        {"outages", ""},        {"forward median", "m"},   {"forward 95 %", "m"},
-                   {"smoothed median", "m"}, {"smoothed 95 %", "m"}, {"inside 95 % bound", "%"}};
-  page::Panel panel = page::xy_panel(
-      section.id + "-drift", "Drift against duration",
-      {.label = "duration", .unit = "s", .scale = page::Axis::Scale::kLog, .ticks = {}, .range = {}},
-      {.label = "largest horizontal error", .unit = "m", .scale = page::Axis::Scale::kLog, .ticks = {}, .range = {}},
-      "Median and 95 % over all outages of a duration; smoothed lies far below forward.");
-  page::Series forward;
-  page::Series forward95;
-  page::Series smoothed;
-  page::Series smoothed95;
-  const auto push = [](page::Series& s, double x, double y) {
-    s.x.push_back(x);
-    s.y.push_back(y);
-  };
-  for (const DriftRow& row : drift_table(results)) {
-    table.rows.push_back({{fmt::format("{:g}", row.duration_s)},
-                          {fmt::format("{}", row.outages)},
-                          {fmt::format("{:.3f}", row.forward.median)},
-                          {fmt::format("{:.3f}", row.forward.p95)},
-                          {fmt::format("{:.3f}", row.smoothed.median)},
-                          {fmt::format("{:.3f}", row.smoothed.p95)},
-                          {fmt::format("{:.1f}", 100.0 * row.inside_95)}});
-    push(forward, row.duration_s, row.forward.median);
-    push(forward95, row.duration_s, row.forward.p95);
-    push(smoothed, row.duration_s, row.smoothed.median);
-    push(smoothed95, row.duration_s, row.smoothed.p95);
+std::vector<study::OutageResult> of_duration(const std::vector<study::OutageResult>& results, double duration_s) {
+  std::vector<study::OutageResult> chosen;
+  for (const study::OutageResult& result : results)
+    if (result.outage.duration_s == duration_s) chosen.push_back(result);
+  return chosen;
+}
+
+Json paired_json(const study::PairedRatio& paired) {
+  return {{"pairs", paired.pairs},
+          {"ratio", paired.ratio},
+          {"interval_95", {paired.low, paired.high}},
+          {"second_smaller", paired.second_smaller},
+          {"sign_test", paired.sign_test}};
+}
+
+void outage_sweep(const SweepStudy& config, Json& j, report::Page& page, const study::Progress& progress) {
+  std::vector<std::vector<study::OutageResult>> results;
+  for (const study::NamedModel& model : config.models) {
+    results.push_back(run_model(config, model, progress));
+    j["models"].push_back(model_json(model, results.back()));
+    page.sections.push_back(sweep_section(model.name, results.back(), results.size()));
   }
-  page::add_line(panel.plot(), "forward, median", forward, page::Tone::kForward);
-  page::add_line(panel.plot(), "forward, 95 %", forward95, page::Tone::kForward).style = page::Line::Style::kDashed;
-  page::add_line(panel.plot(), "smoothed, median", smoothed, page::Tone::kSmoothed);
-  page::add_line(panel.plot(), "smoothed, 95 %", smoothed95, page::Tone::kSmoothed).style = page::Line::Style::kDashed;
-  section.tables.push_back(std::move(table));
-  section.panels.push_back(std::move(panel));
-  return section;
+  for (std::size_t i = 1; i < results.size(); ++i)
+    for (const DriftRow& row : drift_table(results.front()))
+      for (const bool smoothed : {false, true}) {
+        const auto drift = [&](std::size_t model) {
+          return study::drifts(of_duration(results[model], row.duration_s), study::DriftMeasure::kHorizontal, smoothed);
+        };
+        Json pair = {{"first", config.models.front().name},
+                     {"second", config.models[i].name},
+                     {"duration_s", row.duration_s},
+                     {"solution", smoothed ? "smoothed" : "forward"}};
+        pair.update(paired_json(study::paired_ratio(drift(0), drift(i))));
+        j["paired"].push_back(pair);
+      }
+}
+
+const char* name_of(study::DriftMeasure measure) {
+  constexpr std::array kNames{"n", "e", "d", "horizontal"};
+  return kNames[static_cast<std::size_t>(measure)];
+}
+constexpr std::array kMeasures{study::DriftMeasure::kNorth, study::DriftMeasure::kEast, study::DriftMeasure::kDown,
+                               study::DriftMeasure::kHorizontal};
+
+Json spread_json(const study::Spread& spread) {
+  return {{"median_m", spread.median}, {"rms_m", spread.rms}, {"p95_m", spread.p95}};
+}
+
+Json solution_json(const std::vector<study::OutageResult>& seeds, bool smoothed) {
+  const study::EnsembleDrift drift = study::ensemble_drift(seeds, smoothed);
+  Json j;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    const std::string name = name_of(kMeasures[axis]);
+    j["largest"][name] = spread_json(drift.largest[axis]);
+    j["end"][name] = spread_json(drift.end[axis]);
+    j["end"][name]["predicted_rms_m"] = drift.predicted_end_rms_m(static_cast<Eigen::Index>(axis));
+  }
+  j["largest"]["horizontal"] = spread_json(drift.horizontal);
+  j["share_inside_95"] = drift.inside_95;
+  for (const study::DriftMeasure measure : kMeasures)
+    j["largest_by_seed_m"][name_of(measure)] = study::drifts(seeds, measure, smoothed);
+  return j;
+}
+
+Json paired_runs(const std::vector<EnsemblePair>& pairs, std::size_t outage) {
+  Json j;
+  for (const EnsemblePair& pair : pairs)
+    for (const bool smoothed : {false, true}) {
+      Json entry = {{"truth", pair.first->truth},
+                    {"first", pair.first->filter},
+                    {"second", pair.second->filter},
+                    {"solution", smoothed ? "smoothed" : "forward"}};
+      for (const study::DriftMeasure measure : kMeasures)
+        entry[name_of(measure)] =
+            paired_json(study::paired_ratio(study::drifts(pair.first->outages[outage], measure, smoothed),
+                                            study::drifts(pair.second->outages[outage], measure, smoothed)));
+      j.push_back(entry);
+    }
+  return j;
+}
+
+Json ensemble_json(const EnsembleStudy& config, const study::EnsembleResult& result) {
+  Json j;
+  j["simulated"] = {{"scenario", config.scenario.filename().string()},
+                    {"seeds", {{"first", config.plan.first_seed}, {"count", config.plan.seeds}}}};
+  for (std::size_t i = 0; i < result.outages.size(); ++i) {
+    Json outage = {{"start_s", result.outages[i].start_s}, {"duration_s", result.outages[i].duration_s}};
+    for (const study::EnsembleRun& run : result.runs)
+      outage["runs"].push_back({{"truth", run.truth},
+                                {"error_model", run.filter},
+                                {"gyro_noise_alone_m", gyro_noise_drift_of(config, run, result.outages[i].duration_s)},
+                                {"forward", solution_json(run.outages[i], false)},
+                                {"smoothed", solution_json(run.outages[i], true)}});
+    outage["paired"] = paired_runs(pairs_of(config, result), i);
+    j["outages"].push_back(outage);
+  }
+  return j;
+}
+
+void ensemble(const EnsembleStudy& config, Json& j, report::Page& page, const study::Progress& progress) {
+  const study::EnsembleResult result =
+      study::run_ensemble(config.plan, [&](double fraction) { progress("simulating and processing seeds", fraction); });
+  j = ensemble_json(config, result);
+  add_ensemble(config, result, page);
 }
 
 }  // namespace
@@ -172,30 +168,17 @@ void outage(const std::filesystem::path& study_yaml, const CommonOptions& option
   const std::filesystem::path out = output_folder(study_yaml, options.out);
 
   Json j;
-  coast::report::Page page;
+  report::Page page;
   page.title = "Outage study";
   page.subtitle = study_yaml.filename().string();
-  std::vector<std::vector<study::OutageResult>> results;
-  for (const Model& model : config.models) {
-    results.push_back(run_model(config, model, progress));
-    j["models"].push_back(model_json(model, results.back()));
-    page.sections.push_back(drift_section(model, results.back(), results.size()));
-  }
+  if (const auto* sweep = std::get_if<SweepStudy>(&config))
+    outage_sweep(*sweep, j, page, progress);
+  else
+    ensemble(std::get<EnsembleStudy>(config), j, page, progress);
   line.clear();
-  for (std::size_t i = 1; i < results.size(); ++i)
-    for (const DriftRow& row : drift_table(results.front()))
-      for (const bool smoothed : {false, true}) {
-        const PairedRatio ratio = paired_ratio(results.front(), results[i], row.duration_s, smoothed);
-        j["paired"].push_back({{"first", config.models.front().name},
-                               {"second", config.models[i].name},
-                               {"duration_s", row.duration_s},
-                               {"solution", smoothed ? "smoothed" : "forward"},
-                               {"ratio", ratio.ratio},
-                               {"interval_95", {ratio.low, ratio.high}}});
-      }
   io::write_text(out / "outage.json", j.dump(1) + "\n");
-  io::write_text(out / "report.json", coast::report::to_json(page));
-  io::write_text(out / "report.html", coast::report::render(page));
+  io::write_text(out / "report.json", report::to_json(page));
+  io::write_text(out / "report.html", report::render(page));
   if (!options.quiet) fmt::print("report: {}\n", (out / "report.html").string());
 }
 

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "drift.hpp"
+#include "coast/study/paired.hpp"
 #include "page_curves.hpp"
 #include "page_parts.hpp"
 
@@ -28,8 +28,8 @@ report::Panel body_velocity(const ProcessPage& page) {
 /// A vehicle that moves along one of its axes shows its yaw against the IMU; one that drifts or flies sideways does not.
 report::Panel course_minus_heading(const ProcessPage& page, report::Series slip) {
   constexpr double kAlongOneAxis = 10.0;  // deg between the 5 % and the 95 % quantile
-  const double median = quantile(slip.y, 0.5);
-  const bool steady = quantile(slip.y, 0.95) - quantile(slip.y, 0.05) < kAlongOneAxis;
+  const double median = study::quantile(slip.y, 0.5);
+  const bool steady = study::quantile(slip.y, 0.95) - study::quantile(slip.y, 0.05) < kAlongOneAxis;
   report::Panel panel = report::time_panel(
       "course-minus-heading", "Course minus heading", "deg",
       steady

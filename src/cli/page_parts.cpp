@@ -6,7 +6,7 @@
 #include <cmath>
 #include <limits>
 
-#include "drift.hpp"
+#include "coast/study/paired.hpp"
 
 namespace coast::cli {
 
@@ -125,8 +125,8 @@ void show_bulk(report::Panel& panel, const Bulk& bulk) {
   for (report::Plot& plot : panel.plots) {
     const std::vector<double> values = drawn_values(plot, bulk.from_s);
     if (values.size() < kFewest) continue;
-    const double low = quantile(values, bulk.tail);
-    const double high = quantile(values, 1.0 - bulk.tail);
+    const double low = study::quantile(values, bulk.tail);
+    const double high = study::quantile(values, 1.0 - bulk.tail);
     const double height = (1.0 + 2.0 * bulk.air) * (high - low);
     const auto [least, greatest] = std::ranges::minmax(drawn_values(plot, -std::numeric_limits<double>::infinity()));
     if (!(high > low) || greatest - least < kFlattened * height) continue;

@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "coast/geo/units.hpp"
-#include "drift.hpp"
+#include "coast/study/paired.hpp"
 #include "page_parts.hpp"
 
 namespace coast::cli {
@@ -27,7 +27,7 @@ struct Settled {
 double median_of(const std::vector<Separation>& separations, double (*sigma)(const Separation&)) {
   std::vector<double> values;
   for (const Separation& s : separations) values.push_back(sigma(s));
-  return quantile(std::move(values), 0.5);
+  return study::quantile(std::move(values), 0.5);
 }
 
 Settled settled(const std::vector<Separation>& separations) {
@@ -115,12 +115,12 @@ std::optional<SeparationSummary> summarise(const std::vector<Separation>& separa
   s.epochs = separations.size();
   s.settled = static_cast<double>(all.horizontal.size()) / static_cast<double>(separations.size());
   s.horizontal_rms_m = rms(all.horizontal);
-  s.horizontal_95_m = quantile(all.horizontal, 0.95);
+  s.horizontal_95_m = study::quantile(all.horizontal, 0.95);
   s.vertical_rms_m = rms(all.vertical);
-  s.vertical_95_m = quantile(all.vertical, 0.95);
+  s.vertical_95_m = study::quantile(all.vertical, 0.95);
   for (std::size_t i = 0; i < 3; ++i) {
     s.attitude_rms(static_cast<Eigen::Index>(i)) = rms(all.attitude[i]);
-    s.attitude_95(static_cast<Eigen::Index>(i)) = quantile(all.attitude[i], 0.95);
+    s.attitude_95(static_cast<Eigen::Index>(i)) = study::quantile(all.attitude[i], 0.95);
   }
   s.position_over_sigma = rms(all.position_ratio);
   s.attitude_over_sigma = rms(all.attitude_ratio);

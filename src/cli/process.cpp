@@ -22,8 +22,6 @@ namespace coast::cli {
 
 namespace {
 
-constexpr double kReferenceInterval = 0.1;  // s between the epochs of the gap-free run that outages are compared with
-
 /// The run, stage by stage; each stage leaves its part in `result`.
 class ProcessRun {
  public:
@@ -62,7 +60,7 @@ class ProcessRun {
   std::optional<record::Trajectory> reference_;
   study::Setup setup_;
   study::PreparedMission mission_;
-  record::Trajectory gap_free_;  ///< smoothed, thinned
+  study::GapFreeReference gap_free_;  ///< of the delivered solution
   study::Solution solution_;
   TrajectoryCurves curves_;
   std::vector<KnotState> forward_knots_;
@@ -123,11 +121,7 @@ std::vector<study::Outage> ProcessRun::outages() const {
 void ProcessRun::solve_without_outages() {
   if (config_.outages.empty() || reference_) return;
   study::SolutionOutputs outputs;
-  const auto keep = [this](const record::TrajectoryEpoch& epoch) {
-    if (gap_free_.states.empty() || epoch.nav.t - gap_free_.states.back().t >= kReferenceInterval - 1e-6)
-      gap_free_.states.push_back(epoch.nav);
-  };
-  (config_.smooth ? outputs.smoothed : outputs.forward) = keep;
+  (config_.smooth ? outputs.smoothed : outputs.forward) = [this](const auto& epoch) { gap_free_.add(epoch); };
   static_cast<void>(study::solve(mission_, mission_.options(), config_.smooth, outputs, progress_));
 }
 
@@ -145,7 +139,7 @@ void ProcessRun::solve_and_write() {
   for (const std::string& format : config_.output.formats)
     if (format != "nav" && format != "csv") output.add_writer(io::make_trajectory_writer(format, out_ / "trajectory"));
 
-  const record::Trajectory& truth = reference_ ? *reference_ : gap_free_;
+  const record::Trajectory& truth = reference_ ? *reference_ : gap_free_.trajectory();
   const Eigen::Vector3d arm = reference_ ? config_.reference_lever_arm_b : Eigen::Vector3d::Zero();
   study::Comparison forward_comparison(truth, arm);
   study::Comparison comparison(truth, arm);
@@ -161,8 +155,7 @@ void ProcessRun::solve_and_write() {
     curves_.add_smoothed(epoch);
     if (reference_) comparison.add(epoch);
     for (auto& recorder : recorders) recorder.add(epoch);
-    if (keep_gap_free && (gap_free_.states.empty() || epoch.nav.t - gap_free_.states.back().t >= kReferenceInterval - 1e-6))
-      gap_free_.states.push_back(epoch.nav);
+    if (keep_gap_free) gap_free_.add(epoch);
   };
   study::SolutionOutputs outputs;
   outputs.forward = [&](const record::TrajectoryEpoch& epoch) {
@@ -217,7 +210,7 @@ void ProcessRun::count_innovations() {
 
 void ProcessRun::study_sweep() {
   if (!config_.sweep || !config_.smooth) return;
-  const record::Trajectory& truth = reference_ ? *reference_ : gap_free_;
+  const record::Trajectory& truth = reference_ ? *reference_ : gap_free_.trajectory();
   const Eigen::Vector3d arm = reference_ ? config_.reference_lever_arm_b : Eigen::Vector3d::Zero();
   const auto progress = [this](double fraction) {
     if (progress_) progress_("studying outages", fraction);

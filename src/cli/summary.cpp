@@ -69,10 +69,6 @@ Json events_json(const record::Events& events) {
   return list;
 }
 
-Json drift_json(const Drift& drift) {
-  return {{"median_m", drift.median}, {"p68_m", drift.p68}, {"p95_m", drift.p95}, {"max_m", drift.max}};
-}
-
 Json sweep_json(const std::vector<study::OutageResult>& sweep, const std::string& compared_with) {
   Json list = Json::array();
   for (const DriftRow& row : drift_table(sweep)) {

@@ -94,6 +94,11 @@ OutageErrors OutageRecorder::errors() const {
   return e;
 }
 
+void GapFreeReference::add(const record::TrajectoryEpoch& epoch) {
+  auto& states = trajectory_.states;
+  if (states.empty() || epoch.nav.t - states.back().t >= kSeriesInterval - 1e-6) states.push_back(epoch.nav);
+}
+
 std::vector<Outage> outages_of(const OutageSweep& sweep, geo::GpsTime from, geo::GpsTime to) {
   std::vector<Outage> outages;
   for (const double duration : sweep.durations_s) {

@@ -50,6 +50,7 @@ bool refused(const std::string& name, const json& patch) {
 }
 
 TEST(Schemas, RefuseWhatTheProgramRefuses) {
+  const json hundred_seeds = {{"first", 1}, {"count", 100}};
   EXPECT_FALSE(refused("run", json::object()));
   EXPECT_TRUE(refused("run", {{"imu", {{"fromat", "csv"}}}}));
   EXPECT_TRUE(refused("run", {{"imu", {{"lever_arm_m", {1, 2}}}}}));
@@ -60,6 +61,11 @@ TEST(Schemas, RefuseWhatTheProgramRefuses) {
   EXPECT_FALSE(refused("run", {{"vehicle", "car"}}));
   EXPECT_FALSE(refused("run", {{"outages", {{"durations_s", {20, 60}}}}}));
   EXPECT_TRUE(refused("study", {{"sweep", {{"durations_s", {0}}}}}));
+  EXPECT_FALSE(refused("study", {{"run", nullptr}, {"sweep", nullptr}, {"scenario", "s.yaml"}, {"seeds", hundred_seeds}}));
+  EXPECT_TRUE(refused("study", {{"run", nullptr}, {"sweep", nullptr}, {"scenario", "s.yaml"}}));
+  EXPECT_TRUE(refused("study", {{"sweep", nullptr}, {"scenario", "s.yaml"}, {"seeds", hundred_seeds}}));
+  EXPECT_TRUE(refused("study", {{"scenario", "s.yaml"}, {"seeds", hundred_seeds}}));
+  EXPECT_TRUE(refused("study", {{"floors", json::array()}}));
   EXPECT_TRUE(refused("scenario", {{"trajectory", {{"kind", "rocket"}}}}));
   EXPECT_TRUE(refused("scenario", {{"schema", nullptr}}));
   EXPECT_TRUE(refused("summary", {{"gnss", {{"used", -1}}}}));

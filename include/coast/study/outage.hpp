@@ -62,6 +62,16 @@ class OutageRecorder {
   std::optional<double> gnss_horizontal_max_m_;
 };
 
+/// The solution without gaps, thinned to ten epochs a second: what outages are measured against where there is no reference.
+class GapFreeReference {
+ public:
+  void add(const record::TrajectoryEpoch& epoch);
+  [[nodiscard]] const record::Trajectory& trajectory() const { return trajectory_; }
+
+ private:
+  record::Trajectory trajectory_;
+};
+
 /// One outage every `every_s` seconds (the first after `first_s` of the mission), of each duration, none longer than a quarter
 /// of the mission and none beyond its end.
 struct OutageSweep {
