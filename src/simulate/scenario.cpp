@@ -35,13 +35,13 @@ geo::Geodetic read_origin(const Node& trajectory) {
 }
 
 Eigen::Vector3d not_negative(const Node& node) {
-  const Eigen::Vector3d v = node.vector3();
+  Eigen::Vector3d v = node.vector3();
   if (v.minCoeff() < 0.0) throw node.error(fmt::format("{}", v.minCoeff()), "three values of at least 0");
   return v;
 }
 
 Eigen::Vector3d positive(const Node& node) {
-  const Eigen::Vector3d v = node.vector3();
+  Eigen::Vector3d v = node.vector3();
   if (!(v.minCoeff() > 0.0)) throw node.error(fmt::format("{}", v.minCoeff()), "three values above 0");
   return v;
 }

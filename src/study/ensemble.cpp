@@ -149,7 +149,7 @@ std::vector<double> drifts(std::span<const OutageResult> outages, DriftMeasure m
   return values;
 }
 
-Spread spread_of(std::vector<double> absolute_errors) {
+Spread spread_of(const std::vector<double>& absolute_errors) {
   double square = 0.0;
   for (const double error : absolute_errors) square += error * error;
   const double rms = std::sqrt(square / static_cast<double>(absolute_errors.size()));

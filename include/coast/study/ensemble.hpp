@@ -80,7 +80,7 @@ struct Spread {
   double rms = 0.0;
   double p95 = 0.0;
 };
-[[nodiscard]] Spread spread_of(std::vector<double> absolute_errors);
+[[nodiscard]] Spread spread_of(const std::vector<double>& absolute_errors);
 
 /// One solution in one outage over the seeds.
 struct EnsembleDrift {
