@@ -53,8 +53,7 @@ report::Table drift_table_of(const View& view) {
   table.title = "Drift over the seeds";
   table.caption =
       "Of the largest error inside each seed's outage: horizontal by median, root mean square and 95 % quantile over the "
-      "seeds; N, E, D "
-      "by root mean square. Inside: share of all errors within their stated 95 %.";
+      "seeds; N, E, D by root mean square. Inside: share of all errors within their stated 95 %.";
   table.columns = {{"error model", "", false},
                    {"solution", "", false},
                    {"median", "m"},
@@ -115,8 +114,8 @@ report::Table paired_table(const View& view) {
   table.title = "Paired ratios";
   table.caption =
       "Largest error of the second over that of the first, seed by seed: geometric mean with its 95 % interval; below 1 the "
-      "second "
-      "drifts less. Smaller: seeds in which the second's horizontal error is the smaller one, with the probability of so "
+      "second drifts less. Smaller: seeds in which the second's horizontal error is the smaller one, with the probability of "
+      "so "
       "uneven a split by chance (sign test).";
   table.columns = {{"second : first", "", false}, {"solution", "", false}, {"N", "", false}, {"E", "", false}, {"D", "", false},
                    {"horizontal", "", false},     {"smaller", "", false},  {"by chance", ""}};
@@ -139,8 +138,8 @@ report::Table paired_table(const View& view) {
 report::Panel distribution_panel(const View& view) {
   report::Panel panel = report::grid_panel(view.id + "-distribution", "Distribution of the drift over the seeds", 2,
                                            "Share of the seeds with a smaller largest horizontal error. The curve further left "
-                                           "drifts less; the dashed floors are as far left as "
-                                           "an error model can bring it.");
+                                           "drifts less; the dashed floors are as far left as an error "
+                                           "model can bring it.");
   for (const bool smoothed : {false, true}) {
     report::Plot& plot = report::add_cell(panel, smoothed ? "smoothed" : "forward", "", "seeds", "%");
     plot.x = {"largest horizontal error", "m", report::Axis::Scale::kLog, {}, {}};
@@ -226,19 +225,16 @@ report::Section section_of(const View& view) {
   section.title = fmt::format("Outage of {:g} s, sensors by {}", view.gap().duration_s, view.truth);
   section.lead = fmt::format(
       "Simulated: the motion, GNSS and sensor errors of {}, with the errors of the IMU drawn from {}, seeds {} to {}. Each "
-      "recording is "
-      "processed with every error model, GNSS and IMU alone, and compared with the simulated truth; GNSS is withheld from "
-      "{:.1f} s "
-      "for {:g} s. White gyro noise alone, with all else known when GNSS is lost, drifts {} m (rms, each of N and E, closed "
-      "form).",
+      "recording is processed with every error model, GNSS and IMU alone, and compared with the simulated truth; GNSS is "
+      "withheld from {:.1f} s for {:g} s. White gyro noise alone, with all else known when GNSS is lost, drifts {} m (rms, "
+      "each of N and E, closed form).",
       view.study.scenario.filename().string(), view.truth, view.study.plan.first_seed,
       view.study.plan.first_seed + view.study.plan.seeds - 1, view.gap().start_s, view.gap().duration_s,
       number(gyro_noise_drift_of(view.study, *view.runs.front(), view.gap().duration_s)));
   if (!view.floors.empty())
     section.lead +=
         " A floor is simulated with that noise alone, the same draws of it, and processed by a filter that knows it: no error "
-        "model of "
-        "these sensors gets below it in the root mean square.";
+        "model of sensors with at least that noise gets below it in the root mean square.";
   section.tables.push_back(drift_table_of(view));
   section.tables.push_back(end_table(view));
   section.tables.push_back(paired_table(view));
