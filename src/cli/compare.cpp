@@ -2,13 +2,14 @@
 
 #include <fmt/format.h>
 
-#include <nlohmann/json.hpp>
+#include <string>
 
 #include "coast/geo/units.hpp"
 #include "coast/io/reference.hpp"
 #include "coast/io/writers.hpp"
 #include "coast/record/error.hpp"
 #include "commands.hpp"
+#include "error_json.hpp"
 #include "load.hpp"
 
 namespace coast::cli {
@@ -33,10 +34,6 @@ std::string errors_csv(const study::Comparison& comparison) {
   return text;
 }
 
-nlohmann::ordered_json array(const Eigen::Vector3d& v) {
-  return {v.x(), v.y(), v.z()};
-}
-
 }  // namespace
 
 void compare(const std::filesystem::path& a, const std::filesystem::path& b, const Eigen::Vector3d& lever_arm_b,
@@ -52,16 +49,10 @@ void compare(const std::filesystem::path& a, const std::filesystem::path& b, con
   if (s.epochs == 0)
     throw InputError({b.string(), 0, "no epoch within the time of " + a.string(), "trajectories that overlap",
                       "Check the GPS weeks of both files."});
-  nlohmann::ordered_json j;
-  j["epochs"] = s.epochs;
-  j["position_rms_m"] = array(s.position_rms_m);
-  j["position_max_m"] = array(s.position_max_m);
-  if (s.velocity_rms_mps) j["velocity_rms_mps"] = array(*s.velocity_rms_mps);
-  if (s.attitude_rms) j["attitude_rms_deg"] = array(*s.attitude_rms / geo::kDegree);
   if (!options.out.empty()) {
     const std::filesystem::path out = output_folder(a, options.out);
     io::write_text(out / "differences.csv", errors_csv(comparison));
-    io::write_text(out / "comparison.json", j.dump(1) + "\n");
+    io::write_text(out / "comparison.json", error_json(s).dump(1) + "\n");
   }
   if (options.quiet) return;
   fmt::print("{} epochs of {} compared, {} minus it, N E D\n", s.epochs, b.string(), a.string());

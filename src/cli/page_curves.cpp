@@ -15,11 +15,11 @@ constexpr double kLeastSpeedOfCourse = 2.0;  // m/s: below it GNSS-grade velocit
 constexpr std::size_t kMainPoints = 16000;   // 3600 s at 200 Hz: an extreme pair every 0.45 s
 constexpr std::size_t kSidePoints = 6000;
 
-report::Decimator curve(std::size_t points) {
+report::Decimator decimator(std::size_t points) {
   return report::Decimator({points, kLongestStep});
 }
 Decimators three(std::size_t points) {
-  return {curve(points), curve(points), curve(points)};
+  return {decimator(points), decimator(points), decimator(points)};
 }
 
 void add_with_band(Decimators& to, double t, const Eigen::Vector3d& value, const Eigen::Vector3d& sd) {
@@ -53,12 +53,12 @@ TrajectoryCurves::Curves::Curves(const record::NavState& nav)
       start_yaw(geo::euler_from_dcm(local.rotation().transpose() * nav.q_b_e.toRotationMatrix()).yaw),
       forward_yaw(start_yaw),
       smoothed_yaw(start_yaw),
-      track(curve(kMainPoints)),
-      height(curve(kMainPoints)),
-      distance(curve(kSidePoints)),
-      speed(curve(kMainPoints)),
+      track(decimator(kMainPoints)),
+      height(decimator(kMainPoints)),
+      distance(decimator(kSidePoints)),
+      speed(decimator(kMainPoints)),
       body_velocity(three(kMainPoints)),
-      slip(curve(kMainPoints)) {}
+      slip(decimator(kMainPoints)) {}
 
 void TrajectoryCurves::Curves::add(const record::TrajectoryEpoch& epoch, SolutionCurves& to, double& last_yaw) {
   const record::NavState& nav = epoch.nav;

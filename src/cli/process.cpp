@@ -22,6 +22,27 @@ namespace coast::cli {
 
 namespace {
 
+/// One solution held against the reference and, in every outage, against the truth.
+class Scores {
+ public:
+  Scores(const record::Trajectory& truth, const Eigen::Vector3d& lever_arm_b, bool is_reference,
+         const std::vector<study::Outage>& outages, const estimate::Mission& mission)
+      : is_reference_(is_reference), comparison_(truth, lever_arm_b) {
+    for (const study::Outage& outage : outages) recorders_.emplace_back(outage, truth, lever_arm_b, mission);
+  }
+  void add(const record::TrajectoryEpoch& epoch) {
+    if (is_reference_) comparison_.add(epoch);
+    for (auto& recorder : recorders_) recorder.add(epoch);
+  }
+  [[nodiscard]] const study::Comparison& comparison() const { return comparison_; }
+  [[nodiscard]] study::OutageErrors outage(std::size_t i) const { return recorders_[i].errors(); }
+
+ private:
+  bool is_reference_;
+  study::Comparison comparison_;
+  std::vector<study::OutageRecorder> recorders_;
+};
+
 /// The run, stage by stage; each stage leaves its part in `result`.
 class ProcessRun {
  public:
@@ -51,6 +72,7 @@ class ProcessRun {
   void describe_input();
   [[nodiscard]] std::vector<study::Outage> outages() const;
   void count_innovations();
+  void note_scores(const std::vector<study::Outage>& gaps, const Scores& forward, const Scores& smoothed);
   void note_estimates() const;
 
   const RunConfig& config_;
@@ -141,28 +163,20 @@ void ProcessRun::solve_and_write() {
 
   const record::Trajectory& truth = reference_ ? *reference_ : gap_free_.trajectory();
   const Eigen::Vector3d arm = reference_ ? config_.reference_lever_arm_b : Eigen::Vector3d::Zero();
-  study::Comparison forward_comparison(truth, arm);
-  study::Comparison comparison(truth, arm);
-  std::vector<study::OutageRecorder> forward_recorders;
-  std::vector<study::OutageRecorder> recorders;
-  for (const study::Outage& gap : gaps) {
-    forward_recorders.emplace_back(gap, truth, arm, mission_.mission());
-    recorders.emplace_back(gap, truth, arm, mission_.mission());
-  }
+  Scores forward_scores(truth, arm, reference_.has_value(), gaps, mission_.mission());
+  Scores scores = forward_scores;
 
   const auto deliver = [&](const record::TrajectoryEpoch& epoch) {
     output.add(epoch);
     curves_.add_smoothed(epoch);
-    if (reference_) comparison.add(epoch);
-    for (auto& recorder : recorders) recorder.add(epoch);
+    scores.add(epoch);
     if (keep_gap_free) gap_free_.add(epoch);
   };
   study::SolutionOutputs outputs;
   outputs.forward = [&](const record::TrajectoryEpoch& epoch) {
     forward_output.add(epoch);
     curves_.add_forward(epoch);
-    if (reference_) forward_comparison.add(epoch);
-    for (auto& recorder : forward_recorders) recorder.add(epoch);
+    forward_scores.add(epoch);
     if (!config_.smooth) deliver(epoch);
   };
   if (config_.smooth) outputs.smoothed = deliver;
@@ -174,21 +188,25 @@ void ProcessRun::solve_and_write() {
   result_.innovations = solution_.forward.innovations;
   result_.events.insert(result_.events.end(), solution_.forward.events.begin(), solution_.forward.events.end());
   count_innovations();
+  note_scores(gaps, forward_scores, scores);
+  result_.states = state_tracks(solution_.filter->layout(), result_.start, forward_knots_, solution_.smoothed);
+}
+
+void ProcessRun::note_scores(const std::vector<study::Outage>& gaps, const Scores& forward, const Scores& smoothed) {
   result_.compared_with = reference_ ? "reference" : "gap_free_run";
   if (reference_) {
-    result_.reference =
-        AgainstReference{forward_comparison.summary(), std::nullopt, forward_comparison.errors(), {}, reference_->has_velocity,
-                         reference_->has_attitude};
+    result_.reference = AgainstReference{forward.comparison().summary(), std::nullopt,
+                                         forward.comparison().errors(),  {},
+                                         reference_->has_velocity,       reference_->has_attitude};
     if (config_.smooth) {
-      result_.reference->smoothed = comparison.summary();
-      result_.reference->smoothed_errors = comparison.errors();
+      result_.reference->smoothed = smoothed.comparison().summary();
+      result_.reference->smoothed_errors = smoothed.comparison().errors();
     }
   }
   for (std::size_t i = 0; i < gaps.size(); ++i) {
-    result_.outages.push_back({gaps[i], forward_recorders[i].errors(), std::nullopt});
-    if (config_.smooth) result_.outages.back().smoothed = recorders[i].errors();
+    result_.outages.push_back({gaps[i], forward.outage(i), std::nullopt});
+    if (config_.smooth) result_.outages.back().smoothed = smoothed.outage(i);
   }
-  result_.states = state_tracks(solution_.filter->layout(), result_.start, forward_knots_, solution_.smoothed);
 }
 
 void ProcessRun::count_innovations() {

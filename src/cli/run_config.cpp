@@ -13,12 +13,12 @@ namespace {
 
 using config::Node;
 
-Eigen::Vector3d degrees(const Eigen::Vector3d& deg) {
+Eigen::Vector3d from_degrees(const Eigen::Vector3d& deg) {
   return geo::kDegree * deg;
 }
 
 Eigen::Vector3d positive3(const Node& node) {
-  const Eigen::Vector3d v = node.vector3();
+  Eigen::Vector3d v = node.vector3();
   if (!(v.array() > 0.0).all()) throw node.error(node.where(), "three values above zero");
   return v;
 }
@@ -34,12 +34,12 @@ GivenStart start_from(const Node& node) {
   start.time_s = node.at("time_s").number();
   start.position = geodetic(node.at("position_deg_m"));
   start.velocity_n = node.at("velocity_mps").vector3();
-  const Eigen::Vector3d attitude = degrees(node.at("attitude_deg").vector3());
+  const Eigen::Vector3d attitude = from_degrees(node.at("attitude_deg").vector3());
   start.attitude = {attitude.x(), attitude.y(), attitude.z()};
   const Node sd = node.at("sd");
   start.sd_position_n = positive3(sd.at("position_m"));
   start.sd_velocity_n = positive3(sd.at("velocity_mps"));
-  start.sd_attitude_n = degrees(positive3(sd.at("attitude_deg")));
+  start.sd_attitude_n = from_degrees(positive3(sd.at("attitude_deg")));
   return start;
 }
 

@@ -7,6 +7,7 @@
 
 #include "coast/geo/units.hpp"
 #include "drift.hpp"
+#include "error_json.hpp"
 
 namespace coast::cli {
 
@@ -14,33 +15,16 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-Json array(const Eigen::Vector3d& v) {
-  return Json::array({v.x(), v.y(), v.z()});
-}
-Json degrees(const Eigen::Vector3d& v) {
-  return array(v / geo::kDegree);
-}
-
-Json error_json(const study::ErrorSummary& s) {
-  Json j;
-  j["epochs"] = s.epochs;
-  j["position_rms_m"] = array(s.position_rms_m);
-  j["position_max_m"] = array(s.position_max_m);
-  if (s.velocity_rms_mps) j["velocity_rms_mps"] = array(*s.velocity_rms_mps);
-  if (s.attitude_rms) j["attitude_rms_deg"] = degrees(*s.attitude_rms);
-  return j;
-}
-
 Json outage_errors_json(const study::OutageErrors& e) {
   Json j;
-  j["max_m"] = array(e.max_m);
-  j["rms_m"] = array(e.rms_m);
-  j["end_m"] = array(e.end_m);
-  j["sigma_end_m"] = array(e.sigma_end_m);
-  j["sigma_max_m"] = array(e.sigma_max_m);
+  j["max_m"] = array_json(e.max_m);
+  j["rms_m"] = array_json(e.rms_m);
+  j["end_m"] = array_json(e.end_m);
+  j["sigma_end_m"] = array_json(e.sigma_end_m);
+  j["sigma_max_m"] = array_json(e.sigma_max_m);
   j["horizontal_max_m"] = e.horizontal_max_m;
   if (e.gnss_horizontal_max_m) j["gnss_horizontal_max_m"] = *e.gnss_horizontal_max_m;
-  j["attitude_max_deg"] = degrees(e.attitude_max);
+  j["attitude_max_deg"] = degrees_json(e.attitude_max);
   if (e.tested > 0) j["share_inside_95"] = static_cast<double>(e.inside_95) / static_cast<double>(e.tested);
   return j;
 }
@@ -110,8 +94,8 @@ Json separation_json(const std::vector<Separation>& separations) {
   const double n = static_cast<double>(separations.size());
   Json j;
   j["epochs"] = separations.size();
-  j["position_rms_m"] = array((position / n).cwiseSqrt());
-  j["attitude_rms_arcmin"] = array((attitude / n).cwiseSqrt() / geo::kArcMinute);
+  j["position_rms_m"] = array_json((position / n).cwiseSqrt());
+  j["attitude_rms_arcmin"] = array_json((attitude / n).cwiseSqrt() / geo::kArcMinute);
   return j;
 }
 
@@ -156,8 +140,8 @@ std::string summary_json(const ProcessResult& result) {
   }
   if (result.noise_fit) j["noise_fit"] = noise_json(*result.noise_fit);
   if (result.lever_arm)
-    j["lever_arm_misclosure"] = {{"estimated_minus_configured_m", array(result.lever_arm->difference_m)},
-                                 {"sd_m", array(result.lever_arm->sd_m)}};
+    j["lever_arm_misclosure"] = {{"estimated_minus_configured_m", array_json(result.lever_arm->difference_m)},
+                                 {"sd_m", array_json(result.lever_arm->sd_m)}};
   if (!result.separations.empty()) j["forward_backward_separation"] = separation_json(result.separations);
   for (const StateTrack& track : result.states)
     if (!track.smoothed.empty())

@@ -37,14 +37,13 @@ struct Parameter {
 std::vector<Parameter> free_parameters(const NoiseFitChoice& choice, bool velocities) {
   std::vector<Parameter> p;
   if (choice.gnss_scale) {
-    p.push_back({"gnss_scale_horizontal", [](auto& a) -> double& { return a.gnss_scale.horizontal; }, 0.02, 100.0});
-    p.push_back({"gnss_scale_vertical", [](auto& a) -> double& { return a.gnss_scale.vertical; }, 0.02, 100.0});
+    p.push_back({"gnss_scale_horizontal", [](auto& a) -> double& { return a.gnss_scale.horizontal; }, 0.005, 100.0});
+    p.push_back({"gnss_scale_vertical", [](auto& a) -> double& { return a.gnss_scale.vertical; }, 0.005, 100.0});
     if (velocities)
-      p.push_back({"gnss_scale_velocity", [](auto& a) -> double& { return a.gnss_scale.velocity; }, 0.02, 100.0});
+      p.push_back({"gnss_scale_velocity", [](auto& a) -> double& { return a.gnss_scale.velocity; }, 0.005, 100.0});
   }
   if (choice.correlated_gnss) {
-    p.push_back(
-        {"correlated_horizontal_m", [](auto& a) -> double& { return a.correlated_gnss.horizontal_m; }, 1e-4, 20.0});
+    p.push_back({"correlated_horizontal_m", [](auto& a) -> double& { return a.correlated_gnss.horizontal_m; }, 1e-4, 20.0});
     p.push_back({"correlated_vertical_m", [](auto& a) -> double& { return a.correlated_gnss.vertical_m; }, 1e-4, 20.0});
     p.push_back({"correlated_time_s", [](auto& a) -> double& { return a.correlated_gnss.time_s; }, 1.0, 600.0});
   }
@@ -203,8 +202,7 @@ NoiseAdjustment starting_point(const FilterOptions& options, const NoiseFitChoic
 
 NoiseFit fit_noise(const Mission& mission, const noise::ImuErrorModel& model, const FilterOptions& options,
                    const NoiseFitChoice& choice, const NoiseAdjustment& from,
-                   const std::function<FilterState(const ForwardFilter&)>& start,
-                   const std::function<void(double)>& progress) {
+                   const std::function<FilterState(const ForwardFilter&)>& start, const std::function<void(double)>& progress) {
   const bool velocities = options.use_gnss_velocity &&
                           std::ranges::any_of(mission.gnss.fixes, [](const auto& fix) { return fix.velocity.has_value(); });
   const std::vector<Parameter> parameters = free_parameters(choice, velocities);

@@ -9,7 +9,7 @@ namespace coast::geo {
 
 namespace {
 
-constexpr std::int64_t kSecond = 1'000'000'000;
+constexpr std::int64_t kNanosecondsPerSecond = 1'000'000'000;
 constexpr std::int64_t kGpsEpochNtp = 2'524'953'600;  // 1980-01-06 in seconds since 1900-01-01
 constexpr int kTaiMinusGps = 19;                      // s, constant by definition of GPS time
 
@@ -29,7 +29,7 @@ LeapSecondTable make_built_in() {
 }
 
 GpsTime from_ntp(std::int64_t seconds) {
-  return GpsTime::from_nanoseconds((seconds - kGpsEpochNtp) * kSecond);
+  return GpsTime::from_nanoseconds((seconds - kGpsEpochNtp) * kNanosecondsPerSecond);
 }
 
 // A list that contradicts history is not trusted with the future.

@@ -18,16 +18,16 @@
 namespace coast::ins {
 namespace {
 
-constexpr double kGoodHeading = 1.0 * geo::kDegree;  // the search for a better window ends
-constexpr double kFairHeading = 5.0 * geo::kDegree;  // taken where `kPatience_s` brought none better
-constexpr double kPatience_s = 60.0;
+constexpr double kGoodHeading = 1.0 * geo::kDegree;     // the search for a better window ends
+constexpr double kFairHeading = 5.0 * geo::kDegree;     // taken where `kPatience` brought none better
+constexpr double kPatience = 60.0;                      // s
 constexpr double kGyrocompass = 2.0 * geo::kDegree;     // better than this and no motion is asked
 constexpr double kUsableHeading = 15.0 * geo::kDegree;  // a filter linear in the attitude converges from here
 constexpr double kClearLead = 6.0;                      // -2 log likelihood: another heading is 20 times less likely
-constexpr double kSearch_s = 600.0, kSearchStep_s = 20.0;
-constexpr double kStandstillVelocitySd = 0.02;  // m/s; an engine shakes, a rotor lifts
-constexpr double kForceError = 0.02;            // m/s^2, of attitude and accelerometer bias together
-constexpr double kMinForceBias = 1e-3;          // m/s^2; no accelerometer is better, nor is gravity known better
+constexpr double kSearch = 600.0, kSearchStep = 20.0;   // s
+constexpr double kStandstillVelocitySd = 0.02;          // m/s; an engine shakes, a rotor lifts
+constexpr double kForceError = 0.02;                    // m/s^2, of attitude and accelerometer bias together
+constexpr double kMinForceBias = 1e-3;                  // m/s^2; no accelerometer is better, nor is gravity known better
 
 const char* const kGiveStart =
     "Give the state under `start:` (time_s, position_deg_m, velocity_mps, attitude_deg, sd), or start the recording earlier or "
@@ -152,7 +152,7 @@ std::optional<Heading> heading_from_motion(const AlignmentInput& input, const Sp
   const geo::GpsTime t_at = samples[at].t - samples[at].dt;
   const Eigen::Matrix3d C_e_n = geo::C_n_e(geo::geodetic_from_ecef(input.gnss.fixes.front().r_ea_e)).transpose();
   std::optional<Heading> best;
-  for (double from = 0.0; from < kSearch_s && t_at + from < span.end; from += kSearchStep_s) {
+  for (double from = 0.0; from < kSearch && t_at + from < span.end; from += kSearchStep) {
     Eigen::Vector3d nearby = gyro_bias;  // a short window survives a poor bias; what it finds carries the longer ones
     for (double length : {10.0, 20.0, 40.0, 80.0}) {
       const std::size_t first = sample_after(input.imu, t_at + from + 1e-6);
@@ -178,7 +178,7 @@ std::optional<Heading> heading_from_motion(const AlignmentInput& input, const Sp
       if (!best || heading.sd_n.z() < best->sd_n.z()) best = heading;
       if (best->sd_n.z() < kGoodHeading) return best;
     }
-    if (best && best->sd_n.z() < kFairHeading && from >= kPatience_s) break;
+    if (best && best->sd_n.z() < kFairHeading && from >= kPatience) break;
   }
   return best;
 }
@@ -192,7 +192,7 @@ void require_usable(const std::optional<Heading>& heading, const Span& span, boo
       "initial heading", to_string(span.t),
       fmt::format("the first {:.0f} s of motion must show the heading within {:.0f} deg, {}: too little "
                   "horizontal acceleration for this GNSS. {}{}",
-                  std::min(kSearch_s, span.end - span.t), kUsableHeading / geo::kDegree, found, hint, kGiveStart));
+                  std::min(kSearch, span.end - span.t), kUsableHeading / geo::kDegree, found, hint, kGiveStart));
 }
 
 InitialState from_standstill(const AlignmentInput& input, const Span& span, const StaticPeriod& period, bool vehicle_forward) {

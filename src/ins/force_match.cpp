@@ -21,8 +21,8 @@ namespace {
 constexpr double kSideslip = 4.0 * geo::kDegree;  // course against body axis: mounting and drift, one value for a whole window
 constexpr double kSlowest = 0.3, kCourseSigmas = 5.0;  // m/s
 constexpr double kOverlap = 1.5;                       // neighbouring hats share a quarter of their noise
-constexpr double kRateSpan_s = 0.02;                   // s to both sides, for the antenna's velocity against the IMU
-constexpr int kMaxIterations = 30;
+constexpr double kRateSpan = 0.02;                     // s to both sides, for the antenna's velocity against the IMU
+constexpr int kGaussNewtonSteps = 30;
 
 using Matrix9 = Eigen::Matrix<double, 9, 9>;  // psi_e, gyro bias, accelerometer bias
 using Vector9 = Eigen::Matrix<double, 9, 1>;
@@ -56,7 +56,7 @@ struct LeverPath {
     return l[i - 1] + part * (l[i] - l[i - 1]);
   }
   [[nodiscard]] Lever velocity(double time) const {
-    const double from = std::max(time - kRateSpan_s, t.front()), to = std::min(time + kRateSpan_s, t.back());
+    const double from = std::max(time - kRateSpan, t.front()), to = std::min(time + kRateSpan, t.back());
     return (at(to) - at(from)) / (to - from);
   }
   // The antenna's mean acceleration against the IMU: the derivatives of the weights act on the lever arm.
@@ -210,7 +210,7 @@ Normal linearise(const MatchInput& input, const std::vector<ForceObservation>& o
 
 // Gauss-Newton, with a bound on the step: a heading far off must turn, not tumble.
 Estimate refine(const MatchInput& input, const Window& window, Estimate x) {
-  for (int iteration = 0; iteration < kMaxIterations; ++iteration) {
+  for (int iteration = 0; iteration < kGaussNewtonSteps; ++iteration) {
     const std::vector<Prediction> predictions = window.predict(x.gyro_bias);
     const Normal normal = linearise(input, window.observations(), predictions, x);
     const Eigen::LDLT<Matrix9> solver(normal.N);

@@ -9,7 +9,7 @@
 namespace coast::ins {
 namespace {
 
-struct Fit {
+struct PolynomialFit {
   Eigen::Vector3d value = Eigen::Vector3d::Zero();
   Eigen::Vector3d slope = Eigen::Vector3d::Zero();
   double value_gain = 1.0;  // sd of the value for observations of sd 1
@@ -17,14 +17,14 @@ struct Fit {
 };
 
 // Polynomial of `degree` (0 to 2) in time, equal weights.
-Fit fit_polynomial(const Eigen::VectorXd& times, const Eigen::MatrixX3d& values, int degree) {
+PolynomialFit fit_polynomial(const Eigen::VectorXd& times, const Eigen::MatrixX3d& values, int degree) {
   Eigen::MatrixXd design(times.size(), degree + 1);
   for (int j = 0; j <= degree; ++j) design.col(j) = times.array().pow(j);
   const Eigen::MatrixXd normal = design.transpose() * design;
   const Eigen::LDLT<Eigen::MatrixXd> solver(normal);
   const Eigen::MatrixXd coefficients = solver.solve(design.transpose() * values);
   const Eigen::MatrixXd cofactor = solver.solve(Eigen::MatrixXd::Identity(degree + 1, degree + 1));
-  Fit fit;
+  PolynomialFit fit;
   fit.value = coefficients.row(0).transpose();
   fit.value_gain = std::sqrt(cofactor(0, 0));
   if (degree > 0) {
@@ -76,11 +76,11 @@ TrackPoint track_point(const record::GnssRecording& gnss, geo::GpsTime t) {
       sd_velocity = std::max(sd_velocity, axis_sd(fix.velocity->cov_n));
     }
   }
-  const Fit position = fit_polynomial(times, positions, n > 3 ? 2 : 1);
+  const PolynomialFit position = fit_polynomial(times, positions, n > 3 ? 2 : 1);
   TrackPoint point{origin + position.value, position.slope, sd_position * position.value_gain,
                    sd_position * position.slope_gain};
   if (has_velocity && sd_velocity < point.sd_velocity) {
-    const Fit velocity = fit_polynomial(times, velocities, 1);
+    const PolynomialFit velocity = fit_polynomial(times, velocities, 1);
     point.v_ea_e = velocity.value;
     point.sd_velocity = sd_velocity * velocity.value_gain;
   }

@@ -11,9 +11,9 @@
 namespace coast::ins {
 namespace {
 
-constexpr double kShortest_s = 1.0, kLongest_s = 12.0;
-constexpr std::size_t kFixes = 3;         // at least, where they come within kLongest_s
-constexpr double kVelocitySpan_s = 0.02;  // to both sides
+constexpr double kShortest = 1.0, kLongest = 12.0;  // s
+constexpr std::size_t kFixes = 3;                   // at least, where they come within kLongest
+constexpr double kVelocitySpan = 0.02;              // s, to both sides
 
 // The antenna as the strapdown moves it from a first guess.
 struct PredictedPath {
@@ -26,7 +26,7 @@ struct PredictedPath {
     return r_e[i - 1] + (time - t[i - 1]) / (t[i] - t[i - 1]) * (r_e[i] - r_e[i - 1]);
   }
   [[nodiscard]] Eigen::Vector3d velocity(double time) const {
-    const double from = std::max(time - kVelocitySpan_s, t.front()), to = std::min(time + kVelocitySpan_s, t.back());
+    const double from = std::max(time - kVelocitySpan, t.front()), to = std::min(time + kVelocitySpan, t.back());
     return (at(to) - at(from)) / (to - from);
   }
 };
@@ -67,12 +67,12 @@ TrackPoint start_point(const AlignmentInput& input, const StartAttitude& attitud
   const TrackPoint rough = track_point(input.gnss, start);
   record::NavState guess{start, rough.r_ea_e - attitude.C_b_e * input.lever_arm_b, rough.v_ea_e,
                          Eigen::Quaterniond(attitude.C_b_e)};
-  const PredictedPath path = predict(input, attitude, guess, start + kLongest_s);
+  const PredictedPath path = predict(input, attitude, guess, start + kLongest);
 
   const record::GnssFix& near = input.gnss.fixes.front();
   const double sd = axis_sd(near.position_cov_n);
   // The longer, the better the slope of the fixes (sqrt(2) sd / T), the worse the motion that is subtracted (force error T/2).
-  const double horizon = std::clamp(std::sqrt(std::sqrt(8.0) * sd / attitude.force_error), kShortest_s, kLongest_s);
+  const double horizon = std::clamp(std::sqrt(std::sqrt(8.0) * sd / attitude.force_error), kShortest, kLongest);
 
   Line line;
   std::size_t used = 0;

@@ -10,7 +10,7 @@ namespace coast::ins {
 namespace {
 
 // Means over a quarter of a second: an engine's shake (10 Hz and more) averages out, the start of a movement does not.
-constexpr double kBlock_s = 0.25;
+constexpr double kBlock = 0.25;  // s
 constexpr std::size_t kBlocksPerSecond = 4;
 
 // Bounds that hold whatever the quietest part of the recording is (it may be a flight).
@@ -33,7 +33,7 @@ std::vector<Block> block_means(const std::vector<record::ImuSample>& samples) {
   for (std::size_t i = 0; i < samples.size();) {
     Block block{i, i, Eigen::Vector3d::Zero(), Eigen::Vector3d::Zero()};
     double length = 0.0;
-    for (; i < samples.size() && length < kBlock_s - 0.5 * samples[i].dt; ++i) {
+    for (; i < samples.size() && length < kBlock - 0.5 * samples[i].dt; ++i) {
       length += samples[i].dt;
       block.force += samples[i].dv;
       block.rate += samples[i].dtheta;

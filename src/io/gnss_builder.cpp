@@ -10,7 +10,7 @@ namespace coast::io {
 
 namespace {
 
-constexpr double kNanShare = 0.2;  // receivers write empty rows where they have no fix
+constexpr double kGnssNanShare = 0.2;  // receivers write empty rows where they have no fix
 // Printed digits may push correlations beyond 1, most where a standard deviation has one digit left; twice is no rounding.
 constexpr double kLeastShrink = 0.5;
 constexpr double kLeastEigenvalue = 1e-3;
@@ -61,7 +61,7 @@ Eigen::Matrix3d GnssBuilder::covariance(const SignedRoots& roots, std::string_vi
 }
 
 void GnssBuilder::leave_out_nan() {
-  repairs_.add("nan_row", "with a field that is empty or not finite left out", kNanShare,
+  repairs_.add("nan_row", "with a field that is empty or not finite left out", kGnssNanShare,
                table_.error("a field that is empty or not finite", "numbers", "Are the columns mapped right?"), std::nullopt);
 }
 

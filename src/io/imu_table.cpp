@@ -12,7 +12,7 @@ namespace coast::io {
 
 namespace {
 
-constexpr double kNanShare = 0.01;
+constexpr double kImuNanShare = 0.01;
 
 class ImuTable {
  public:
@@ -37,7 +37,7 @@ class ImuTable {
  private:
   void take_row() {
     if (!table_.finite()) {
-      repairs_.add("nan_row", "with a field that is empty or not finite left out", kNanShare,
+      repairs_.add("nan_row", "with a field that is empty or not finite left out", kImuNanShare,
                    table_.error("a field that is empty or not finite", "numbers", "Are the columns mapped right?"),
                    std::nullopt);
       return;

@@ -13,7 +13,7 @@ namespace coast::io {
 
 namespace {
 
-constexpr double kNanShare = 0.01;
+constexpr double kReferenceNanShare = 0.01;
 using Form = AttitudeOptions::Form;
 
 class ReferenceTable {
@@ -74,7 +74,7 @@ class ReferenceTable {
 
   void take_row() {
     if (!table_.finite()) {
-      repairs_.add("nan_row", "with a field that is empty or not finite left out", kNanShare,
+      repairs_.add("nan_row", "with a field that is empty or not finite left out", kReferenceNanShare,
                    table_.error("a field that is empty or not finite", "numbers", "Are the columns mapped right?"),
                    std::nullopt);
       return;

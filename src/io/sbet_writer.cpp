@@ -12,7 +12,7 @@ namespace coast::io {
 
 namespace {
 
-constexpr std::size_t kBlock = std::size_t{1} << 16;
+constexpr std::size_t kWriteBlock = std::size_t{1} << 16;
 
 /// Records of doubles, collected into blocks.
 class RecordFile {
@@ -20,7 +20,7 @@ class RecordFile {
   explicit RecordFile(const std::filesystem::path& path) : file_(path) {}
   void put(double value) { append_number(bytes_, value); }
   void end_record() {
-    if (bytes_.size() >= kBlock) flush();
+    if (bytes_.size() >= kWriteBlock) flush();
   }
   void flush() {
     file_.write(bytes_);

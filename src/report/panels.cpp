@@ -30,7 +30,7 @@ Panel panel_with(std::string id, std::string title, std::string caption, int col
 }  // namespace
 
 Panel time_panel(std::string id, std::string title, std::string unit, std::string caption) {
-  Panel panel = panel_with(std::move(id), title, std::move(caption), 1);
+  Panel panel = panel_with(std::move(id), std::move(title), std::move(caption), 1);
   Plot& plot = panel.plots.emplace_back();
   plot.x = time_axis();
   plot.y = linear_axis({}, std::move(unit));

@@ -45,7 +45,7 @@ class PositionError {
   }
 
   Eigen::Vector3d next() {
-    const Eigen::Vector3d error = options_.sd.cwiseProduct(draw(white_)) + correlated_;
+    Eigen::Vector3d error = options_.sd.cwiseProduct(draw(white_)) + correlated_;
     if (options_.correlated) correlated_ = phi_ * correlated_ + drive_ * options_.correlated->sd.cwiseProduct(draw(walk_));
     return error;
   }

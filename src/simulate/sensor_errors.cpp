@@ -110,7 +110,7 @@ void add_errors(record::ImuRecording& recording, const record::ImuRecording& tru
 
 }  // namespace
 
-record::ImuRecording with_errors(record::ImuRecording truth, const noise::ImuErrorModel& model, std::uint64_t seed) {
+record::ImuRecording with_errors(const record::ImuRecording& truth, const noise::ImuErrorModel& model, std::uint64_t seed) {
   record::ImuRecording measured = truth;
   for (const noise::Sensor sensor : {noise::Sensor::kGyro, noise::Sensor::kAccel}) {
     const bool gyro = sensor == noise::Sensor::kGyro;

@@ -12,9 +12,9 @@
 namespace coast::simulate {
 namespace {
 
-constexpr double kSegment = 0.25;  // s: 16 nodes integrate a step of 1 s and a tone of 3 Hz to rounding
-constexpr double kMargin = 1.0;    // s of motion before and after the stated span
-constexpr double kLongest = 2e5;   // s
+constexpr double kSegment = 0.25;       // s: 16 nodes integrate a step of 1 s and a tone of 3 Hz to rounding
+constexpr double kMargin = 1.0;         // s of motion before and after the stated span
+constexpr double kLongestMotion = 2e5;  // s
 
 using Jet1 = Jet<1>;
 using Jet2 = Jet<2>;
@@ -135,9 +135,9 @@ Eigen::Vector3d f_ib_b(const Kinematics& body) {
 }
 
 AnalyticTrajectory::AnalyticTrajectory(MotionPlan plan) : plan_(std::move(plan)) {
-  if (!(plan_.duration > 0.0) || plan_.duration > kLongest)
+  if (!(plan_.duration > 0.0) || plan_.duration > kLongestMotion)
     throw std::invalid_argument(
-        fmt::format("MotionPlan::duration is {} s, expected above 0 and at most {} s", plan_.duration, kLongest));
+        fmt::format("MotionPlan::duration is {} s, expected above 0 and at most {} s", plan_.duration, kLongestMotion));
   const geo::Radii radii = geo::radii_of_curvature(plan_.origin.latitude);
   radius_ = std::sqrt(radii.meridian * radii.prime_vertical) + plan_.origin.height;
   C_p0_e_ = geo::C_n_e(plan_.origin);

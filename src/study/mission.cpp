@@ -108,7 +108,10 @@ void PreparedMission::refine_antenna(const Progress& progress) {
     const estimate::ForwardFilter filter(*mission_, setup_.model, setup_.filter);
     const estimate::StateLayout& layout = filter.layout();
     if (!layout.time_offset() && !layout.lever_arm()) return;
-    const Eigen::VectorXd x = filter.run(start_state(filter), {}).last.x;
+    estimate::FilterState start = start_state(filter);  // the prior stays where the configuration put it
+    if (layout.time_offset()) start.x(*layout.time_offset()) = setup_.time_offset_s - mission_->time_offset_s;
+    if (layout.lever_arm()) start.x.segment<3>(*layout.lever_arm()) = setup_.lever_arm_b - mission_->lever_arm_b;
+    const Eigen::VectorXd x = filter.run(start, {}).last.x;
     const double time = layout.time_offset() ? x(*layout.time_offset()) : 0.0;
     const Eigen::Vector3d arm = layout.lever_arm() ? x.segment<3>(*layout.lever_arm()).eval() : Eigen::Vector3d::Zero();
     if (std::abs(time) < kSettledTime && arm.norm() < kSettledArm) return;

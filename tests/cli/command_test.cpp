@@ -1,5 +1,6 @@
 // The program as a user runs it: exit status, messages, files.
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 #include <sys/wait.h>
 
@@ -88,7 +89,7 @@ TEST(Commands, ProcessesWhatSimulateWroteAndRepeatsItFromTheResolvedFile) {
 
   // White GNSS noise of 1 and 2 cm at 5 Hz: smoothed within a centimetre outside the outage, decimetres inside.
   const auto& smoothed = summary["reference"]["smoothed"];
-  for (int i = 0; i < 3; ++i) EXPECT_LE(smoothed["position_rms_m"][i].get<double>(), 0.03) << i;
+  for (std::size_t i = 0; i < 3; ++i) EXPECT_LE(smoothed["position_rms_m"][i].get<double>(), 0.03) << i;
   // 3 degrees of freedom, 1000 epochs: the mean of NIS lies within 3.9 sqrt(6 / 1000) of 3 but once in ten thousand.
   EXPECT_NEAR(summary["nis"]["mean"].get<double>(), summary["nis"]["expected"].get<double>(), 0.3);
   ASSERT_EQ(summary["outages"].size(), 1U);
@@ -106,7 +107,7 @@ TEST(Commands, ProcessesWhatSimulateWroteAndRepeatsItFromTheResolvedFile) {
                                folder.path());
   ASSERT_EQ(compared.status, 0) << compared.error;
   const auto comparison = nlohmann::json::parse(text_of(folder.path() / "cmp" / "comparison.json"));
-  for (int i = 0; i < 3; ++i)  // 1 um and 10 um steps of the .nav file's digits
+  for (std::size_t i = 0; i < 3; ++i)  // 1 um and 10 um steps of the .nav file's digits
     EXPECT_NEAR(comparison["position_rms_m"][i].get<double>(), smoothed["position_rms_m"][i].get<double>(), 2e-5) << i;
 
   fs::remove(out / "report.html");

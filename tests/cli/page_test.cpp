@@ -104,6 +104,23 @@ StateTrack track(const std::string& name, double value) {
   return t;
 }
 
+void add_reference(ProcessResult& r) {
+  AgainstReference reference;
+  for (int i = 0; i <= 100; ++i) {
+    study::ErrorSample s;
+    s.t = kStart + i;
+    s.position_n = {0.01, -0.02, 0.03};
+    s.sd_position = Eigen::Vector3d::Constant(0.03);
+    s.sd_attitude = Eigen::Vector3d::Constant(1e-3);
+    reference.forward_errors.push_back(s);
+    reference.smoothed_errors.push_back(s);
+    r.separations.push_back(
+        {kStart + i, {0.3, 0.4, -0.1}, {1e-4, 2e-4, 3e-4}, Eigen::Vector3d::Constant(0.2), Eigen::Vector3d::Constant(1e-4)});
+  }
+  reference.has_velocity = reference.has_attitude = true;
+  r.reference = reference;
+}
+
 /// Everything that a run can find out.
 ProcessResult full_result() {
   ProcessResult r;
@@ -131,20 +148,7 @@ ProcessResult full_result() {
       record.nis = 3.0;
       r.innovations.push_back(record);
     }
-  AgainstReference reference;
-  for (int i = 0; i <= 100; ++i) {
-    study::ErrorSample s;
-    s.t = kStart + i;
-    s.position_n = {0.01, -0.02, 0.03};
-    s.sd_position = Eigen::Vector3d::Constant(0.03);
-    s.sd_attitude = Eigen::Vector3d::Constant(1e-3);
-    reference.forward_errors.push_back(s);
-    reference.smoothed_errors.push_back(s);
-    r.separations.push_back(
-        {kStart + i, {0.3, 0.4, -0.1}, {1e-4, 2e-4, 3e-4}, Eigen::Vector3d::Constant(0.2), Eigen::Vector3d::Constant(1e-4)});
-  }
-  reference.has_velocity = reference.has_attitude = true;
-  r.reference = reference;
+  add_reference(r);
   r.compared_with = "reference";
   r.outages = {outage(20.0, 10.0, 0.01)};
   for (int i = 0; i < 20; ++i) r.sweep.push_back(outage(4.0 * i, i % 2 == 0 ? 5.0 : 10.0, 0.01 + 0.001 * i));

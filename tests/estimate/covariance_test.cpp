@@ -68,8 +68,8 @@ class Covariance : public testing::Test {
       }
       Q.block<3, 3>(kPsi, kPsi) = body.C_b_e * layout_->gyro_density_b() * body.C_b_e.transpose();
       Q.block<3, 3>(kVel, kVel) = body.C_b_e * layout_->accel_density_b() * body.C_b_e.transpose();
-      const Eigen::MatrixXd Fdt = F * dt;
-      const Eigen::MatrixXd Phi = Eigen::MatrixXd::Identity(n, n) + Fdt + 0.5 * Fdt * Fdt;
+      const Eigen::MatrixXd F_dt = F * dt;
+      const Eigen::MatrixXd Phi = Eigen::MatrixXd::Identity(n, n) + F_dt + 0.5 * F_dt * F_dt;
       P = (Phi * (P + 0.5 * dt * Q) * Phi.transpose() + 0.5 * dt * Q).eval();
     }
     return P;

@@ -81,7 +81,7 @@ TEST_F(SmootherTest, EqualsTheDenseConditionalGaussian) {
   const auto count = static_cast<Eigen::Index>(knots_.size());
   ASSERT_GT(count, 20);
   // Errors e of the trajectory without any feedback: e[k+1] = Phi e[k] + w. `fed` is what feedback has taken out by then.
-  Eigen::MatrixXd Sigma(n * count, n * count);
+  Eigen::MatrixXd P_all(n * count, n * count);
   std::vector<Eigen::RowVectorXd> rows;
   std::vector<double> z, fed_at_row;
   std::vector<Eigen::VectorXd> fed_after;
@@ -90,7 +90,7 @@ TEST_F(SmootherTest, EqualsTheDenseConditionalGaussian) {
   Eigen::MatrixXd M = P_start_;
   for (Eigen::Index k = 0; k < count; ++k) {
     const Knot& knot = knots_[static_cast<std::size_t>(k)];
-    Sigma.block(n * k, n * k, n, n) = M;
+    P_all.block(n * k, n * k, n, n) = M;
     for (const AppliedUpdate& u : knot.updates) {
       for (Eigen::Index i = 0; i < u.y.size(); ++i) {
         Eigen::RowVectorXd row = Eigen::RowVectorXd::Zero(n * count);
@@ -110,8 +110,8 @@ TEST_F(SmootherTest, EqualsTheDenseConditionalGaussian) {
     fed = Phi * fed;
     M = Phi * M * Phi.transpose() + Q;
     for (Eigen::Index j = 0; j <= k; ++j) {
-      Sigma.block(n * (k + 1), n * j, n, n) = Phi * Sigma.block(n * k, n * j, n, n);
-      Sigma.block(n * j, n * (k + 1), n, n) = Sigma.block(n * (k + 1), n * j, n, n).transpose();
+      P_all.block(n * (k + 1), n * j, n, n) = Phi * P_all.block(n * k, n * j, n, n);
+      P_all.block(n * j, n * (k + 1), n, n) = P_all.block(n * (k + 1), n * j, n, n).transpose();
     }
   }
   const auto m = static_cast<Eigen::Index>(rows.size());
@@ -122,13 +122,13 @@ TEST_F(SmootherTest, EqualsTheDenseConditionalGaussian) {
     R.block(at, at, block.rows(), block.rows()) = block;
     at += block.rows();
   }
-  const Eigen::MatrixXd HSigma = H * Sigma;
-  const Eigen::LLT<Eigen::MatrixXd> S(HSigma * H.transpose() + R);
-  const Eigen::VectorXd e = HSigma.transpose() * S.solve(Eigen::Map<const Eigen::VectorXd>(z.data(), m));
-  const Eigen::MatrixXd W = S.matrixL().solve(HSigma);
+  const Eigen::MatrixXd HP = H * P_all;
+  const Eigen::LLT<Eigen::MatrixXd> S(HP * H.transpose() + R);
+  const Eigen::VectorXd e = HP.transpose() * S.solve(Eigen::Map<const Eigen::VectorXd>(z.data(), m));
+  const Eigen::MatrixXd W = S.matrixL().solve(HP);
   for (Eigen::Index k = 0; k < count; ++k) {
-    const Eigen::MatrixXd Wk = W.middleCols(n * k, n);
-    const Eigen::MatrixXd P = Sigma.block(n * k, n * k, n, n) - Wk.transpose() * Wk;
+    const Eigen::MatrixXd W_k = W.middleCols(n * k, n);
+    const Eigen::MatrixXd P = P_all.block(n * k, n * k, n, n) - W_k.transpose() * W_k;
     // Rounding times the condition of S.
     expect_same(e.segment(n * k, n) - fed_after[static_cast<std::size_t>(k)], P, static_cast<std::size_t>(k), 1e-9);
   }

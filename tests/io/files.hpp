@@ -20,12 +20,12 @@ namespace coast::test {
 class Files {
  public:
   std::filesystem::path put(const std::string& name, const std::string& content) const {
-    const auto path = folder_.path() / name;
+    auto path = folder_.path() / name;
     std::ofstream(path, std::ios::binary) << content;
     return path;
   }
   std::filesystem::path put_gzip(const std::string& name, const std::string& content) const {
-    const auto path = folder_.path() / name;
+    auto path = folder_.path() / name;
     gzFile file = gzopen(path.c_str(), "wb");
     gzwrite(file, content.data(), static_cast<unsigned>(content.size()));
     gzclose(file);

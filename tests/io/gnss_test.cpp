@@ -1,8 +1,10 @@
 #include "coast/io/gnss.hpp"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <Eigen/Eigenvalues>
+#include <random>
 
 #include "coast/geo/earth.hpp"
 #include "coast/geo/units.hpp"

@@ -1,9 +1,11 @@
 #include "coast/io/imu.hpp"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <bit>
 #include <cstring>
+#include <random>
 
 #include "coast/geo/units.hpp"
 #include "coast/io/writers.hpp"

@@ -1,5 +1,6 @@
 #include "coast/io/reference.hpp"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <Eigen/Geometry>

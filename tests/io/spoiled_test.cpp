@@ -1,5 +1,6 @@
 // Spoiled inputs: each is refused with an InputError that names the file and, where there is one, the line.
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <cstring>
@@ -115,7 +116,9 @@ std::vector<Spoiled> imu_files() {
        kImuHeader +
            [] {
              std::string s;
-             for (int i = 0; i < 60; ++i) s += fmt::format("{:.2f},{},0,0,0,0,-9.8\n", 100.0 + 0.01 * (i / 2), i);
+             for (int i = 0; i < 30; ++i)
+               for (int again = 0; again < 2; ++again)
+                 s += fmt::format("{:.2f},{},0,0,0,0,-9.8\n", 100.0 + 0.01 * i, 2 * i + again);
              return s;
            }(),
        kWeek, "%:3: time repeats"},
@@ -125,6 +128,12 @@ std::vector<Spoiled> imu_files() {
        "%:7: an angular rate of 3e+200"},
       {"column beyond the table", Kind::kImu, "1,0,0,0,0,0\n2,0,0,0,0,0\n", kMapped, "%:1: 6 columns, expected column 7"},
       {"name without a header", Kind::kImu, imu_rows(5), replaced(kMapped, "2,", "gx,"), "%:1: no header line"},
+  };
+}
+
+std::vector<Spoiled> binary_imu_files() {
+  const std::string csv = imu_csv();
+  return {
       {"zero byte in the middle", Kind::kImu, kImuHeader + imu_rows(5) + std::string(4, '\0') + imu_rows(5), kWeek,
        "%:7: binary data"},
       {"a picture", Kind::kImu, std::string("\x89PNG\r\n\x1a\n\0\0\0\rIHDR\0\0", 18), kWeek, "%:"},
@@ -187,6 +196,11 @@ std::vector<Spoiled> gnss_files() {
       {"missing field", Kind::kGnss, with_row(" 0 0 0 0 0", " 0 0 0 0"), "", "%:6: 14 columns, expected 15"},
       {"letters for a latitude", Kind::kGnss, with_row("40.1", "N40.1"), "", "%:6: \"N40.1\" in column 3"},
       {"time goes back", Kind::kGnss, good + pos_rows(3), "", "%:32: time goes back by 7.250 s"},
+  };
+}
+
+std::vector<Spoiled> gnss_tables() {
+  return {
       {"week not whole", Kind::kGnss, kPosHeader + "2374.5 100.0 40 5 0 1 9 1 1 1 0 0 0 0 0\n", "", "%:2: GPS week 2374.5"},
       {"week negative", Kind::kGnss, kPosHeader + "-3 100.0 40 5 0 1 9 1 1 1 0 0 0 0 0\n", "", "%:2: GPS week -3"},
       {"week and seconds in UTC", Kind::kGnss, replaced(kPosHeader, "GPST", "UTC") + "2374 100.0 40 5 0 1 9 1 1 1 0 0 0 0 0\n",
@@ -276,7 +290,8 @@ std::vector<Spoiled> reference_files() {
 TEST(SpoiledInput, EveryOneIsRefusedWithFileAndLine) {
   const Files files;
   auto all = imu_files();
-  for (const auto& list : {gnss_files(), reference_files()}) all.insert(all.end(), list.begin(), list.end());
+  for (const auto& list : {binary_imu_files(), gnss_files(), gnss_tables(), reference_files()})
+    all.insert(all.end(), list.begin(), list.end());
   EXPECT_GE(all.size(), 100U);
   int index = 0;
   for (const Spoiled& spoiled : all) {

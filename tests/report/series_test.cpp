@@ -110,8 +110,9 @@ TEST(Decimator, BucketsHoldOneAndTheSamePowerOfTwoOfSamples) {
   const Series kept = decimator.finish();
   const double size = kept.x.at(2);
   EXPECT_EQ(std::exp2(std::round(std::log2(size))), size);
-  for (std::size_t i = 0; i + 2 < kept.x.size(); i += 2) {
-    EXPECT_EQ(kept.x[i], size * static_cast<double>(i / 2));
+  double bucket = 0.0;
+  for (std::size_t i = 0; i + 2 < kept.x.size(); i += 2, bucket += 1.0) {
+    EXPECT_EQ(kept.x[i], size * bucket);
     EXPECT_EQ(kept.x[i + 1], kept.x[i] + size - 1.0);
   }
 }

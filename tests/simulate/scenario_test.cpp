@@ -113,7 +113,7 @@ TEST(ErrorFreeMission, GivesTheRecordingsOfSimulateAndPairsThem) {
 
 TEST(Scenario, NamesWhatIsWrong) {
   EXPECT_EQ(message_of(kMinimal), "accepted");
-  const auto replaced = [](std::string from, const std::string& to) {
+  const auto replaced = [](const std::string& from, const std::string& to) {
     std::string text = kMinimal;
     return text.replace(text.find(from), from.size(), to);
   };

@@ -9,11 +9,11 @@
 namespace coast::study {
 namespace {
 
-const geo::GpsTime kStart = geo::GpsTime::from_week(2374, 1000.0);
+const geo::GpsTime kEpoch = geo::GpsTime::from_week(2374, 1000.0);
 
 record::NavState standing(const geo::Geodetic& p, double s, const geo::Euler& attitude) {
   record::NavState nav;
-  nav.t = kStart + s;
+  nav.t = kEpoch + s;
   nav.r_eb_e = geo::ecef_from_geodetic(p);
   nav.q_b_e = Eigen::Quaterniond(geo::C_n_e(p) * geo::dcm_from_euler(attitude));
   return nav;

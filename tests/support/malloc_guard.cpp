@@ -3,11 +3,13 @@
 #include <cstddef>
 
 namespace {
-thread_local long allocations_so_far = 0;
+// What malloc does has no other place to be kept.
+thread_local long allocations_so_far = 0;  // NOLINT(cppcoreguidelines-avoid-non-const-global-variables)
 }  // namespace
 
 #ifdef COAST_COUNT_ALLOCATIONS
 // glibc's own entries stand behind ours; operator new and Eigen come through malloc.
+// NOLINTBEGIN(bugprone-reserved-identifier,readability-identifier-naming): the names are glibc's
 extern "C" {
 void* __libc_malloc(std::size_t size);
 void* __libc_calloc(std::size_t count, std::size_t size);
@@ -26,6 +28,7 @@ void* realloc(void* old, std::size_t size) noexcept {
   return __libc_realloc(old, size);
 }
 }
+// NOLINTEND(bugprone-reserved-identifier,readability-identifier-naming)
 #endif
 
 namespace coast::test {

@@ -34,7 +34,7 @@ class Realisation {
 ///
 /// @param truth  error-free increments in sensor axes
 /// @param seed   of the run; each process of each axis draws from a stream of its own that depends on nothing else
-[[nodiscard]] record::ImuRecording with_errors(record::ImuRecording truth, const noise::ImuErrorModel& model,
+[[nodiscard]] record::ImuRecording with_errors(const record::ImuRecording& truth, const noise::ImuErrorModel& model,
                                                std::uint64_t seed);
 
 }  // namespace coast::simulate

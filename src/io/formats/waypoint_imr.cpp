@@ -18,7 +18,7 @@ namespace coast::io {
 namespace {
 
 constexpr std::size_t kHeader = 512;
-constexpr std::size_t kRecord = 32;
+constexpr std::size_t kRecordBytes = 32;
 constexpr std::string_view kMagic = "$IMURAW";
 
 struct ImrHeader {
@@ -69,7 +69,7 @@ record::ImuRecording read_imr(const ImuFileOptions& options, Format::Near near) 
   // Rates become increments of the nominal interval, so that both kinds go one way.
   const double gyro = h.gyro_scale * geo::kDegree / (h.gyro_increments ? 1.0 : h.rate_hz);
   const double accel = h.accel_scale / (h.accel_increments ? 1.0 : h.rate_hz);
-  const std::size_t records = (bytes.size() - kHeader) / kRecord;
+  const std::size_t records = (bytes.size() - kHeader) / kRecordBytes;
   std::size_t index = 0;
   const auto error = [&](std::string found, std::string expected, std::string what_to_do) {
     return InputError(
@@ -80,7 +80,7 @@ record::ImuRecording read_imr(const ImuFileOptions& options, Format::Near near) 
   TimeOrder order(error, repairs);
   recording.samples.reserve(records);
   for (; index < records; ++index) {
-    const std::size_t at = kHeader + index * kRecord;
+    const std::size_t at = kHeader + index * kRecordBytes;
     record::ImuSample sample;
     sample.t = clock.at(number_at<double>(bytes, at, h.big_endian) + h.time_bias + options.time.offset_s);
     if (h.utc) sample.t = sample.t + geo::leap_seconds(sample.t);
@@ -93,7 +93,7 @@ record::ImuRecording read_imr(const ImuFileOptions& options, Format::Near near) 
   }
   recording.events = clock.events();
   repairs.finish(static_cast<long>(records), recording.events);
-  const std::size_t rest = (bytes.size() - kHeader) % kRecord;
+  const std::size_t rest = (bytes.size() - kHeader) % kRecordBytes;
   if (rest != 0)
     recording.events.push_back({record::Event::Severity::kWarning, "trailing_garbage",
                                 fmt::format("{}: the last {} bytes are no whole record; left out", recording.source, rest),

@@ -68,7 +68,7 @@ class FirstOrderGaussMarkov final : public GaussMarkov {
   Form form_;
 };
 
-std::vector<ProcessPtr> make(const config::Node& entry, const EntryContext& context) {
+std::vector<ProcessPtr> make_gauss_markov(const config::Node& entry, const EntryContext& context) {
   const GaussMarkovParameters parameters{.name = "gauss_markov",
                                          .sigma = value_with_unit(entry, "sigma", kSignal, context),
                                          .beta = 1.0 / entry.at("correlation_time_s").number(),
@@ -102,7 +102,7 @@ Registration gauss_markov() {
           "first-order Gauss-Markov process: `sigma` is the stationary standard deviation, `correlation_time_s` = 1/beta; "
           "`first_order: table1 | section2e` for the paper's approximate discretisations",
           "{process: gauss_markov, sigma: 0.1, unit: deg/h, correlation_time_s: 1000}",
-          "{process: gauss_markov, sigma: 2e-4, unit: m/s^2, correlation_time_s: 2500}", make};
+          "{process: gauss_markov, sigma: 2e-4, unit: m/s^2, correlation_time_s: 2500}", make_gauss_markov};
 }
 
 }  // namespace coast::noise

@@ -29,7 +29,7 @@ class WhiteNoise final : public Process {
   std::string_view unit_;
 };
 
-std::vector<ProcessPtr> make(const config::Node& entry, const EntryContext& context) {
+std::vector<ProcessPtr> make_white_noise(const config::Node& entry, const EntryContext& context) {
   if (entry.find("density"))
     return {make_white_noise(value_with_unit(entry, "density", kSignalNoise, context), context.sensor)};
   if (!(context.rate_hz > 0.0))
@@ -48,7 +48,7 @@ Registration white_noise() {
   return {"white_noise",
           "white noise of the signal: `density` (per square root of Hz), or `variance_per_sample` at the model's rate_hz",
           "{process: white_noise, density: 0.15, unit: deg/sqrt(h)}", "{process: white_noise, density: 50, unit: ug/sqrt(Hz)}",
-          make};
+          make_white_noise};
 }
 
 }  // namespace coast::noise

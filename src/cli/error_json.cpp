@@ -1,0 +1,25 @@
+#include "error_json.hpp"
+
+#include "coast/geo/units.hpp"
+
+namespace coast::cli {
+
+nlohmann::ordered_json array_json(const Eigen::Vector3d& v) {
+  return nlohmann::ordered_json::array({v.x(), v.y(), v.z()});
+}
+
+nlohmann::ordered_json degrees_json(const Eigen::Vector3d& v) {
+  return array_json(v / geo::kDegree);
+}
+
+nlohmann::ordered_json error_json(const study::ErrorSummary& errors) {
+  nlohmann::ordered_json j;
+  j["epochs"] = errors.epochs;
+  j["position_rms_m"] = array_json(errors.position_rms_m);
+  j["position_max_m"] = array_json(errors.position_max_m);
+  if (errors.velocity_rms_mps) j["velocity_rms_mps"] = array_json(*errors.velocity_rms_mps);
+  if (errors.attitude_rms) j["attitude_rms_deg"] = degrees_json(*errors.attitude_rms);
+  return j;
+}
+
+}  // namespace coast::cli
