@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cstdio>
 #include <system_error>
 
@@ -42,6 +43,8 @@ void print_inspection(const Recordings& recordings, bool quiet) {
   warn(recordings.inspection_events);
 }
 
+namespace {
+
 ins::InitialState start_of(const GivenStart& start, geo::GpsTime near) {
   ins::InitialState state;
   state.nav.t = geo::GpsTime::from_week(near.week(), start.time_s);
@@ -54,6 +57,20 @@ ins::InitialState start_of(const GivenStart& start, geo::GpsTime near) {
   state.sd_attitude_n = start.sd_attitude_n;
   state.method = "given in the configuration";
   return state;
+}
+
+}  // namespace
+
+study::Setup setup_of(const RunConfig& config, const Recordings& recordings, const std::optional<study::OutageSweep>& sweep) {
+  study::Setup setup = config.setup;
+  const geo::GpsTime first_fix = recordings.gnss.fixes.front().t;
+  if (config.start) setup.start = start_of(*config.start, first_fix);
+  const auto studied_from = [&setup](geo::GpsTime t) {
+    if (!setup.refine_before || t < *setup.refine_before) setup.refine_before = t;
+  };
+  for (const OutageSeconds& outage : config.outages) studied_from(geo::GpsTime::from_week(first_fix.week(), outage.start_s));
+  if (sweep) studied_from(std::max(first_fix, recordings.imu.samples.front().t) + sweep->first_s);
+  return setup;
 }
 
 std::filesystem::path output_folder(const std::filesystem::path& input, const std::filesystem::path& out) {

@@ -25,8 +25,9 @@ struct Recordings {
 [[nodiscard]] Recordings load(const RunConfig& config);
 /// First thing on the terminal: what was understood, and the warnings.
 void print_inspection(const Recordings& recordings, bool quiet);
-/// The start of run.yaml in the week of the recordings.
-[[nodiscard]] ins::InitialState start_of(const GivenStart& start, geo::GpsTime near);
+/// The setup of run.yaml with what depends on the recordings: a given start in their week, and where the first outage begins.
+[[nodiscard]] study::Setup setup_of(const RunConfig& config, const Recordings& recordings,
+                                    const std::optional<study::OutageSweep>& sweep);
 /// `--out`, or the yaml's name + ".out"; made where it is missing.  @throws OutputError
 [[nodiscard]] std::filesystem::path output_folder(const std::filesystem::path& input, const std::filesystem::path& out);
 

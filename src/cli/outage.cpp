@@ -20,10 +20,9 @@ using Json = nlohmann::ordered_json;
 
 std::vector<study::OutageResult> run_model(const SweepStudy& config, const study::NamedModel& model,
                                            const study::Progress& progress) {
-  study::Setup setup = config.run.setup;
-  setup.model = model.model;
   Recordings recordings = load(config.run);
-  if (config.run.start) setup.start = start_of(*config.run.start, recordings.gnss.fixes.front().t);
+  study::Setup setup = setup_of(config.run, recordings, config.sweep);
+  setup.model = model.model;
   const study::PreparedMission mission(std::move(recordings.imu), std::move(recordings.gnss), std::move(setup), progress);
   study::GapFreeReference gap_free;
   study::SolutionOutputs outputs;

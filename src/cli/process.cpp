@@ -52,7 +52,7 @@ class ProcessRun {
         progress_(progress),
         result_(what_was_read(recordings)),
         reference_(std::move(recordings.reference)),
-        setup_(setup_of(config, recordings)),
+        setup_(setup_of(config, recordings, config.sweep)),
         mission_(std::move(recordings.imu), std::move(recordings.gnss), setup_, progress),
         curves_(mission_.start().nav) {
     describe_input();
@@ -68,7 +68,6 @@ class ProcessRun {
 
  private:
   [[nodiscard]] static ProcessResult what_was_read(const Recordings& recordings);
-  [[nodiscard]] static study::Setup setup_of(const RunConfig& config, const Recordings& recordings);
   void describe_input();
   [[nodiscard]] std::vector<study::Outage> outages() const;
   void count_innovations();
@@ -103,12 +102,6 @@ ProcessResult ProcessRun::what_was_read(const Recordings& recordings) {
   for (const record::Event& event : recordings.imu.events)
     if (event.kind == "imu_gap") result.imu_gaps += event.count;
   return result;
-}
-
-study::Setup ProcessRun::setup_of(const RunConfig& config, const Recordings& recordings) {
-  study::Setup setup = config.setup;
-  if (config.start) setup.start = start_of(*config.start, recordings.gnss.fixes.front().t);
-  return setup;
 }
 
 void ProcessRun::describe_input() {

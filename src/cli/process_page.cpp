@@ -40,7 +40,7 @@ report::Page make_page(const ProcessPage& page) {
   add(outage_section(page));
   add(reference_section(page));
   add(processing_section(page));
-  out.footer = fmt::format("coast process {}", page.config.file.filename().string());
+  out.footer = fmt::format("coast {}: process {}", COAST_VERSION, page.config.file.filename().string());
   return out;
 }
 

@@ -180,13 +180,15 @@ void PreparedMission::run_back_to_first_epoch() {
 void PreparedMission::refine_start(const Progress& progress) {
   if (setup_.start) return;  // what the user gave stays
   constexpr int kRounds = 4;
+  geo::GpsTime end = start_.nav.t + kRefineWindow;
+  if (setup_.refine_before) end = std::min(end, *setup_.refine_before);
   const estimate::ForwardFilter filter(*mission_, setup_.model, setup_.filter);
   for (int round = 0; round < kRounds; ++round) {
     if (progress) progress("refining the start", static_cast<double>(round) / kRounds);
     estimate::KnotStore first;
     estimate::FilterOutputs outputs;
     outputs.knots = &first;
-    static_cast<void>(filter.run_until(start_state(filter), start_.nav.t + kRefineWindow, outputs));
+    static_cast<void>(filter.run_until(start_state(filter), end, outputs));
     const estimate::SmoothedKnot knot = estimate::smooth(first, filter.layout()).front();
     const auto change = estimate::error_between(knot.nav, start_.nav);
     start_.nav = knot.nav;

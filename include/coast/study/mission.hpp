@@ -26,6 +26,8 @@ struct Setup {
   estimate::FilterOptions filter;
   bool vehicle_forward = false;            ///< the body points where the vehicle goes
   std::optional<ins::InitialState> start;  ///< given; otherwise found
+  /// Where the first studied outage begins: the start is refined with fixes before it alone, or the outage would look too good.
+  std::optional<geo::GpsTime> refine_before;
   std::optional<estimate::NoiseFitChoice> noise_fit;
 };
 
