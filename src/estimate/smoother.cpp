@@ -41,12 +41,14 @@ class BackwardRecursion {
   void through_update(const AppliedUpdate& u) {
     const Eigen::VectorXd gained = u.K.transpose() * r_;
     r_.noalias() += u.H.transpose() * (u.S_inv * u.y - gained);
-    // N - H'(K'N) - (N K) H + H'(K'N K + S^-1) H
+    // (I - K H)' N (I - K H) + H' S^-1 H, one factor after the other: where a fix ends a long outage I - K H is small, and
+    // multiplied out the product would be the difference of terms 1e8 times as large.
     const Eigen::MatrixXd NK = N_ * u.K;
-    const Eigen::MatrixXd middle = u.K.transpose() * NK + u.S_inv;
-    const Eigen::MatrixXd HtKtN = u.H.transpose() * NK.transpose();
-    N_ -= HtKtN + HtKtN.transpose();
-    N_.noalias() += u.H.transpose() * (middle * u.H);
+    N_.noalias() -= NK * u.H;
+    const Eigen::MatrixXd KtN = u.K.transpose() * N_;
+    N_.noalias() -= u.H.transpose() * KtN;
+    N_ = 0.5 * (N_ + N_.transpose()).eval();
+    N_.noalias() += u.H.transpose() * (u.S_inv * u.H);
   }
 
   [[nodiscard]] SmoothedKnot smoothed(const Knot& knot) const {
