@@ -16,23 +16,32 @@ namespace coast::cli {
 
 namespace {
 
-std::string errors_csv(const study::Comparison& comparison) {
-  std::string text = "gps_week,sow_s,north_m,east_m,down_m";
-  if (comparison.has_velocity()) text += ",vn_mps,ve_mps,vd_mps";
-  if (comparison.has_attitude()) text += ",roll_deg,pitch_deg,yaw_deg";
-  text += '\n';
-  const auto add = [&text](const Eigen::Vector3d& v) {
-    fmt::format_to(std::back_inserter(text), ",{:.6f},{:.6f},{:.6f}", v.x(), v.y(), v.z());
-  };
-  for (const study::ErrorSample& e : comparison.errors()) {
-    fmt::format_to(std::back_inserter(text), "{},{:.6f}", e.t.week(), e.t.sow());
-    add(e.position_n);
-    if (comparison.has_velocity()) add(e.velocity_n);
-    if (comparison.has_attitude()) add(e.attitude / geo::kDegree);
-    text += '\n';
+/// differences.csv, row by row.
+class DifferenceTable {
+ public:
+  DifferenceTable(bool velocity, bool attitude) : velocity_(velocity), attitude_(attitude) {
+    text_ = "gps_week,sow_s,north_m,east_m,down_m";
+    if (velocity) text_ += ",vn_mps,ve_mps,vd_mps";
+    if (attitude) text_ += ",roll_deg,pitch_deg,yaw_deg";
+    text_ += '\n';
   }
-  return text;
-}
+  void add(const study::ErrorSample& e) {
+    fmt::format_to(std::back_inserter(text_), "{},{:.6f}", e.t.week(), e.t.sow());
+    add(e.position_n);
+    if (velocity_) add(e.velocity_n);
+    if (attitude_) add(e.attitude / geo::kDegree);
+    text_ += '\n';
+  }
+  [[nodiscard]] const std::string& text() const { return text_; }
+
+ private:
+  void add(const Eigen::Vector3d& v) {
+    fmt::format_to(std::back_inserter(text_), ",{:.6f},{:.6f},{:.6f}", v.x(), v.y(), v.z());
+  }
+  bool velocity_;
+  bool attitude_;
+  std::string text_;
+};
 
 }  // namespace
 
@@ -43,7 +52,8 @@ void compare(const std::filesystem::path& a, const std::filesystem::path& b, con
   record::Trajectory reference = second;
   reference.has_velocity = first.has_velocity && second.has_velocity;
   reference.has_attitude = first.has_attitude && second.has_attitude;
-  study::Comparison comparison(reference, lever_arm_b);
+  DifferenceTable table(reference.has_velocity, reference.has_attitude);
+  study::Comparison comparison(reference, lever_arm_b, [&table](const study::ErrorSample& e) { table.add(e); });
   for (const record::NavState& nav : first.states) comparison.add({nav, {}});
   const study::ErrorSummary s = comparison.summary();
   if (s.epochs == 0)
@@ -51,20 +61,18 @@ void compare(const std::filesystem::path& a, const std::filesystem::path& b, con
                       "Check the GPS weeks of both files."});
   if (!options.out.empty()) {
     const std::filesystem::path out = output_folder(a, options.out);
-    io::write_text(out / "differences.csv", errors_csv(comparison));
+    io::write_text(out / "differences.csv", table.text());
     io::write_text(out / "comparison.json", error_json(s).dump(1) + "\n");
   }
   if (options.quiet) return;
   fmt::print("{} epochs of {} compared, {} minus it, N E D\n", s.epochs, b.string(), a.string());
-  fmt::print("position rms {:.4f} {:.4f} {:.4f} m, largest {:.4f} {:.4f} {:.4f} m\n", s.position_rms_m.x(),
-             s.position_rms_m.y(), s.position_rms_m.z(), s.position_max_m.x(), s.position_max_m.y(), s.position_max_m.z());
-  if (s.velocity_rms_mps)
-    fmt::print("velocity rms {:.4f} {:.4f} {:.4f} m/s\n", s.velocity_rms_mps->x(), s.velocity_rms_mps->y(),
-               s.velocity_rms_mps->z());
-  if (s.attitude_rms) {
-    const Eigen::Vector3d deg = *s.attitude_rms / geo::kDegree;
-    fmt::print("attitude rms {:.4f} {:.4f} {:.4f} deg roll pitch yaw\n", deg.x(), deg.y(), deg.z());
-  }
+  const auto print = [](const char* format, const Eigen::Vector3d& v) {
+    fmt::print(fmt::runtime(format), v.x(), v.y(), v.z());
+  };
+  print("position rms {:.4f} {:.4f} {:.4f} m", s.position.rms);
+  print(", largest {:.4f} {:.4f} {:.4f} m\n", s.position.max);
+  if (s.velocity) print("velocity rms {:.4f} {:.4f} {:.4f} m/s\n", s.velocity->rms);
+  if (s.attitude) print("attitude rms {:.4f} {:.4f} {:.4f} deg roll pitch yaw\n", s.attitude->rms / geo::kDegree);
 }
 
 }  // namespace coast::cli

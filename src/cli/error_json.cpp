@@ -15,10 +15,10 @@ nlohmann::ordered_json degrees_json(const Eigen::Vector3d& v) {
 nlohmann::ordered_json error_json(const study::ErrorSummary& errors) {
   nlohmann::ordered_json j;
   j["epochs"] = errors.epochs;
-  j["position_rms_m"] = array_json(errors.position_rms_m);
-  j["position_max_m"] = array_json(errors.position_max_m);
-  if (errors.velocity_rms_mps) j["velocity_rms_mps"] = array_json(*errors.velocity_rms_mps);
-  if (errors.attitude_rms) j["attitude_rms_deg"] = degrees_json(*errors.attitude_rms);
+  j["position_rms_m"] = array_json(errors.position.rms);
+  j["position_max_m"] = array_json(errors.position.max);
+  if (errors.velocity) j["velocity_rms_mps"] = array_json(errors.velocity->rms);
+  if (errors.attitude) j["attitude_rms_deg"] = degrees_json(errors.attitude->rms);
   return j;
 }
 

@@ -26,19 +26,24 @@ namespace {
 class Scores {
  public:
   Scores(const record::Trajectory& truth, const Eigen::Vector3d& lever_arm_b, bool is_reference,
-         const std::vector<study::Outage>& outages, const estimate::Mission& mission)
-      : is_reference_(is_reference), comparison_(truth, lever_arm_b) {
+         const std::vector<study::Outage>& outages, const estimate::Mission& mission, geo::GpsTime start)
+      : is_reference_(is_reference),
+        errors_(start),
+        comparison_(truth, lever_arm_b, [this](const study::ErrorSample& e) { errors_.add(e); }) {
     for (const study::Outage& outage : outages) recorders_.emplace_back(outage, truth, lever_arm_b, mission);
   }
+  Scores(const Scores&) = delete;
+  Scores& operator=(const Scores&) = delete;
   void add(const record::TrajectoryEpoch& epoch) {
     if (is_reference_) comparison_.add(epoch);
     for (auto& recorder : recorders_) recorder.add(epoch);
   }
-  [[nodiscard]] const study::Comparison& comparison() const { return comparison_; }
+  [[nodiscard]] const ReferenceErrors& errors() const { return errors_; }
   [[nodiscard]] study::OutageErrors outage(std::size_t i) const { return recorders_[i].errors(); }
 
  private:
   bool is_reference_;
+  ReferenceErrors errors_;
   study::Comparison comparison_;
   std::vector<study::OutageRecorder> recorders_;
 };
@@ -54,7 +59,8 @@ class ProcessRun {
         reference_(std::move(recordings.reference)),
         setup_(setup_of(config, recordings, config.sweep)),
         mission_(std::move(recordings.imu), std::move(recordings.gnss), setup_, progress),
-        curves_(mission_.start().nav) {
+        curves_(mission_.start().nav),
+        forward_knots_(mission_.mission().imu.samples.back().t - mission_.start().nav.t) {
     describe_input();
   }
 
@@ -84,7 +90,7 @@ class ProcessRun {
   study::GapFreeReference gap_free_;  ///< of the delivered solution
   study::Solution solution_;
   TrajectoryCurves curves_;
-  std::vector<KnotState> forward_knots_;
+  KnotStates forward_knots_;
 };
 
 ProcessResult ProcessRun::what_was_read(const Recordings& recordings) {
@@ -156,8 +162,8 @@ void ProcessRun::solve_and_write() {
 
   const record::Trajectory& truth = reference_ ? *reference_ : gap_free_.trajectory();
   const Eigen::Vector3d arm = reference_ ? config_.reference_lever_arm_b : Eigen::Vector3d::Zero();
-  Scores forward_scores(truth, arm, reference_.has_value(), gaps, mission_.mission());
-  Scores scores = forward_scores;
+  Scores forward_scores(truth, arm, reference_.has_value(), gaps, mission_.mission(), result_.start);
+  Scores scores(truth, arm, reference_.has_value(), gaps, mission_.mission(), result_.start);
 
   const auto deliver = [&](const record::TrajectoryEpoch& epoch) {
     output.add(epoch);
@@ -173,28 +179,24 @@ void ProcessRun::solve_and_write() {
     if (!config_.smooth) deliver(epoch);
   };
   if (config_.smooth) outputs.smoothed = deliver;
-  outputs.at_knots = [this](const estimate::FilterState& state) { forward_knots_.push_back(knot_state(state)); };
+  outputs.at_knots = [this](const estimate::FilterState& state) { forward_knots_.add(state); };
+  outputs.states = forward_knots_.sampling();
   solution_ = study::solve(mission_, options, config_.smooth, outputs, progress_);
   forward_output.close();
   output.close();
 
-  result_.innovations = solution_.forward.innovations;
+  result_.innovations = std::move(solution_.forward.innovations);
   result_.events.insert(result_.events.end(), solution_.forward.events.begin(), solution_.forward.events.end());
   count_innovations();
   note_scores(gaps, forward_scores, scores);
-  result_.states = state_tracks(solution_.filter->layout(), result_.start, forward_knots_, solution_.smoothed);
+  result_.states = state_tracks(solution_.filter->layout(), result_.start, forward_knots_.knots(), solution_.smoothed);
 }
 
 void ProcessRun::note_scores(const std::vector<study::Outage>& gaps, const Scores& forward, const Scores& smoothed) {
   result_.compared_with = reference_ ? "reference" : "gap_free_run";
   if (reference_) {
-    result_.reference = AgainstReference{forward.comparison().summary(), std::nullopt,
-                                         forward.comparison().errors(),  {},
-                                         reference_->has_velocity,       reference_->has_attitude};
-    if (config_.smooth) {
-      result_.reference->smoothed = smoothed.comparison().summary();
-      result_.reference->smoothed_errors = smoothed.comparison().errors();
-    }
+    result_.reference = AgainstReference{forward.errors(), std::nullopt, reference_->has_velocity, reference_->has_attitude};
+    if (config_.smooth) result_.reference->smoothed = smoothed.errors();
   }
   for (std::size_t i = 0; i < gaps.size(); ++i) {
     result_.outages.push_back({gaps[i], forward.outage(i), std::nullopt});
@@ -236,11 +238,10 @@ void ProcessRun::check_lever_arm() {
 }
 
 void ProcessRun::separate_forward_and_backward() {
-  std::vector<KnotState> backward;
+  SeparationRecorder recorder(forward_knots_.knots());
   mission_.run_backward(
-      solution_.forward.last, [&](const estimate::FilterState& state) { backward.push_back(knot_state(state)); }, progress_);
-  std::ranges::reverse(backward);
-  result_.separations = separations(forward_knots_, backward);
+      solution_.forward.last, [&](const estimate::FilterState& state) { recorder.add(state); }, progress_);
+  result_.separations = std::move(recorder).in_order();
 }
 
 // Values that the run found go into the resolved file, so that it gives the same numbers again.

@@ -1,11 +1,14 @@
 #pragma once
 // Everything that a run of `coast process` found out; summary.json and the page are made of it.
 
+#include <array>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "coast/record/event.hpp"
+#include "coast/report/series.hpp"
+#include "coast/study/comparison.hpp"
 #include "coast/study/mission.hpp"
 #include "coast/study/outage.hpp"
 
@@ -28,13 +31,35 @@ struct StateTrack {
   std::vector<double> smoothed, smoothed_sd;
 };
 
+/// Errors of one solution against the reference: summed up, and as curves over seconds since the start.
+class ReferenceErrors {
+ public:
+  /// One vector of the errors, axis by axis, SI and rad.
+  using Curves = std::array<report::Decimator, 3>;
+
+  explicit ReferenceErrors(geo::GpsTime start);
+  void add(const study::ErrorSample& sample);
+  [[nodiscard]] const study::ErrorStatistics& statistics() const { return statistics_; }
+  [[nodiscard]] const Curves& position() const { return position_; }  ///< band: one predicted sigma around zero
+  [[nodiscard]] const Curves& velocity() const { return velocity_; }
+  [[nodiscard]] const Curves& attitude() const { return attitude_; }  ///< band as of the position
+
+ private:
+  geo::GpsTime start_;
+  study::ErrorStatistics statistics_;
+  Curves position_;
+  Curves velocity_;
+  Curves attitude_;
+};
+
 struct AgainstReference {
-  study::ErrorSummary forward;
-  std::optional<study::ErrorSummary> smoothed;
-  std::vector<study::ErrorSample> forward_errors;
-  std::vector<study::ErrorSample> smoothed_errors;
+  ReferenceErrors forward;
+  std::optional<ReferenceErrors> smoothed;
   bool has_velocity = false;
   bool has_attitude = false;
+  [[nodiscard]] study::ErrorSummary summary(const ReferenceErrors& errors) const {
+    return errors.statistics().summary(has_velocity, has_attitude);
+  }
 };
 
 /// Normalised innovations squared of the GNSS updates, by epoch.

@@ -1,14 +1,26 @@
 #include "state_tracks.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 #include "coast/study/comparison.hpp"
 
 namespace coast::cli {
 
+namespace {
+constexpr double kSampledKnots = 20000.0;  // a page is some 2000 pixels wide
+}  // namespace
+
 KnotState knot_state(const estimate::FilterState& state) {
   return {state.nav, estimate::nav_covariance_n(state.P.topLeftCorner<estimate::kNav, estimate::kNav>(), state.nav.r_eb_e),
           state.x, state.P.diagonal().cwiseSqrt()};
+}
+
+KnotStates::KnotStates(double mission_s) : sampling_(mission_s / kSampledKnots) {}
+
+void KnotStates::add(const estimate::FilterState& state) {
+  if (sampling_.takes(previous_, state.nav.t)) knots_.push_back(knot_state(state));
+  previous_ = state.nav.t;
 }
 
 std::vector<StateTrack> state_tracks(const estimate::StateLayout& layout, geo::GpsTime start,
@@ -20,13 +32,15 @@ std::vector<StateTrack> state_tracks(const estimate::StateLayout& layout, geo::G
       StateTrack track;
       track.name = block.size > 1 ? block.name + " " + std::to_string(i + 1) : block.name;
       const int at = block.offset + i;
-      for (std::size_t k = 0; k < forward.size(); ++k) {
-        track.seconds.push_back(forward[k].nav.t - start);
-        track.forward.push_back(forward[k].x(at));
-        track.forward_sd.push_back(forward[k].sd(at));
-        if (k >= smoothed.size()) continue;
-        track.smoothed.push_back(smoothed[k].x(at));
-        track.smoothed_sd.push_back(smoothed[k].sd(at));
+      for (const KnotState& knot : forward) {
+        track.seconds.push_back(knot.nav.t - start);
+        track.forward.push_back(knot.x(at));
+        track.forward_sd.push_back(knot.sd(at));
+      }
+      for (const estimate::SmoothedKnot& knot : smoothed) {
+        if (knot.x.size() == 0) continue;
+        track.smoothed.push_back(knot.x(at));
+        track.smoothed_sd.push_back(knot.sd(at));
       }
       tracks.push_back(std::move(track));
     }
@@ -36,21 +50,22 @@ std::vector<StateTrack> state_tracks(const estimate::StateLayout& layout, geo::G
   return tracks;
 }
 
-std::vector<Separation> separations(const std::vector<KnotState>& forward, const std::vector<KnotState>& backward) {
+void SeparationRecorder::add(const estimate::FilterState& backward) {
   constexpr double kSame = 1e-4;  // s
-  std::vector<Separation> result;
-  std::size_t j = 0;
-  for (const KnotState& f : forward) {
-    while (j < backward.size() && backward[j].nav.t - f.nav.t < -kSame) ++j;
-    if (j == backward.size()) break;
-    const KnotState& b = backward[j];
-    if (b.nav.t - f.nav.t > kSame) continue;
-    const study::ErrorSample d = study::error_of({f.nav, f.cov}, b.nav);
-    const study::ErrorSample sd_b = study::error_of({b.nav, b.cov}, b.nav);
-    result.push_back({f.nav.t, d.position_n, d.attitude, (d.sd_position.cwiseAbs2() + sd_b.sd_position.cwiseAbs2()).cwiseSqrt(),
-                      (d.sd_attitude.cwiseAbs2() + sd_b.sd_attitude.cwiseAbs2()).cwiseSqrt()});
-  }
-  return result;
+  while (left_ > 0 && forward_[left_ - 1].nav.t - backward.nav.t > kSame) --left_;
+  if (left_ == 0 || backward.nav.t - forward_[left_ - 1].nav.t > kSame) return;
+  const KnotState& f = forward_[left_ - 1];
+  const KnotState b = knot_state(backward);
+  const study::ErrorSample d = study::error_of({f.nav, f.cov}, b.nav);
+  const study::ErrorSample sd_b = study::error_of({b.nav, b.cov}, b.nav);
+  separations_.push_back({f.nav.t, d.position_n, d.attitude,
+                          (d.sd_position.cwiseAbs2() + sd_b.sd_position.cwiseAbs2()).cwiseSqrt(),
+                          (d.sd_attitude.cwiseAbs2() + sd_b.sd_attitude.cwiseAbs2()).cwiseSqrt()});
+}
+
+std::vector<Separation> SeparationRecorder::in_order() && {
+  std::ranges::reverse(separations_);
+  return std::move(separations_);
 }
 
 }  // namespace coast::cli

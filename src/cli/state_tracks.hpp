@@ -16,12 +16,36 @@ struct KnotState {
 };
 [[nodiscard]] KnotState knot_state(const estimate::FilterState& state);
 
-/// Sensor and auxiliary states over time. @param smoothed one per knot, or empty
+/// States at the knots of a sampling: some ten thousand over a mission of any length.
+class KnotStates {
+ public:
+  explicit KnotStates(double mission_s);
+  void add(const estimate::FilterState& state);
+  [[nodiscard]] const estimate::KnotSampling& sampling() const { return sampling_; }
+  [[nodiscard]] const std::vector<KnotState>& knots() const { return knots_; }
+
+ private:
+  estimate::KnotSampling sampling_;
+  std::optional<geo::GpsTime> previous_;
+  std::vector<KnotState> knots_;
+};
+
+/// Sensor and auxiliary states over time. @param smoothed with states at the sampled knots, or empty
 [[nodiscard]] std::vector<StateTrack> state_tracks(const estimate::StateLayout& layout, geo::GpsTime start,
                                                    const std::vector<KnotState>& forward,
                                                    const std::vector<estimate::SmoothedKnot>& smoothed);
-/// Forward minus backward at the knots that both have; both in order of time.
-[[nodiscard]] std::vector<Separation> separations(const std::vector<KnotState>& forward,
-                                                  const std::vector<KnotState>& backward);
+
+/// Forward minus backward filter at the sampled knots of the forward one, while the backward one runs from the far end.
+class SeparationRecorder {
+ public:
+  explicit SeparationRecorder(const std::vector<KnotState>& forward) : forward_(forward), left_(forward.size()) {}
+  void add(const estimate::FilterState& backward);
+  [[nodiscard]] std::vector<Separation> in_order() &&;
+
+ private:
+  const std::vector<KnotState>& forward_;
+  std::size_t left_;  ///< knots of the forward filter that the backward one has not passed yet
+  std::vector<Separation> separations_;
+};
 
 }  // namespace coast::cli

@@ -129,8 +129,9 @@ std::string summary_json(const ProcessResult& result) {
   j["span"] = {{"week", result.start.week()}, {"start_s", result.start.sow()}, {"end_s", result.end.sow()}};
   j["alignment"] = result.alignment;
   if (result.reference) {
-    if (result.reference->smoothed) j["reference"]["smoothed"] = error_json(*result.reference->smoothed);
-    j["reference"]["forward"] = error_json(result.reference->forward);
+    if (result.reference->smoothed)
+      j["reference"]["smoothed"] = error_json(result.reference->summary(*result.reference->smoothed));
+    j["reference"]["forward"] = error_json(result.reference->summary(result.reference->forward));
   }
   if (!result.outages.empty())
     for (const auto& outage : result.outages) j["outages"].push_back(outage_json(outage, result.compared_with));
@@ -161,9 +162,9 @@ std::string summary_text(const ProcessResult& result) {
                                  result.nis.mean, result.nis.expected);
   text += "start: " + result.alignment + "\n";
   if (result.reference) {
-    const study::ErrorSummary& s = result.reference->smoothed ? *result.reference->smoothed : result.reference->forward;
-    text += fmt::format("against the reference, rms: {:.3f} {:.3f} {:.3f} m N E D\n", s.position_rms_m.x(),
-                        s.position_rms_m.y(), s.position_rms_m.z());
+    const AgainstReference& r = *result.reference;
+    const Eigen::Vector3d rms = r.summary(r.smoothed ? *r.smoothed : r.forward).position.rms;
+    text += fmt::format("against the reference, rms: {:.3f} {:.3f} {:.3f} m N E D\n", rms.x(), rms.y(), rms.z());
   }
   for (const DriftRow& row : drift_table(result.sweep))
     text += fmt::format("outages of {:g} s ({}): largest horizontal error, median: forward {:.3f} m, smoothed {:.3f} m\n",

@@ -51,20 +51,29 @@ class BackwardRecursion {
     N_.noalias() += u.H.transpose() * (u.S_inv * u.H);
   }
 
-  [[nodiscard]] SmoothedKnot smoothed(const Knot& knot) const {
+  [[nodiscard]] SmoothedKnot smoothed(const Knot& knot, bool with_states) const {
     SmoothedKnot s;
     s.nav = knot.post.nav;
-    s.x = knot.post.x;
+    Eigen::VectorXd x = knot.post.x;
     const Eigen::MatrixXd& P = knot.P_post;
-    remove_error(P * r_, s.nav, s.x);
-    const Eigen::MatrixXd PN = P * N_;
-    const Eigen::Matrix<double, kNav, kNav> nav = P.topLeftCorner<kNav, kNav>() - PN.topRows<kNav>() * P.leftCols<kNav>();
-    s.cov = nav_covariance_n(nav, s.nav.r_eb_e);
-    s.sd = (P.diagonal() - PN.cwiseProduct(P).rowwise().sum()).cwiseMax(0.0).cwiseSqrt();
+    remove_error(P * r_, s.nav, x);
+    if (with_states) {
+      const Eigen::MatrixXd PN = P * N_;
+      s.x = x;
+      s.sd = (P.diagonal() - PN.cwiseProduct(P).rowwise().sum()).cwiseMax(0.0).cwiseSqrt();
+      s.cov = covariance_of(PN.topRows<kNav>(), knot);
+    } else {
+      s.cov = covariance_of(P.topRows<kNav>() * N_, knot);
+    }
     return s;
   }
 
  private:
+  [[nodiscard]] record::NavCovariance covariance_of(const NavRows& PN, const Knot& knot) const {
+    const Eigen::MatrixXd& P = knot.P_post;
+    const Eigen::Matrix<double, kNav, kNav> nav = P.topLeftCorner<kNav, kNav>() - PN * P.leftCols<kNav>();
+    return nav_covariance_n(nav, knot.post.nav.r_eb_e);
+  }
   void times_phi(const Knot& knot) {
     const auto rest = layout_.size() - kNav;
     Eigen::MatrixXd right = N_.rightCols(rest).transpose();
@@ -83,14 +92,15 @@ class BackwardRecursion {
 
 }  // namespace
 
-std::vector<SmoothedKnot> smooth(const KnotStore& knots, const StateLayout& layout,
-                                 const std::function<void(double)>& progress) {
+std::vector<SmoothedKnot> smooth(const KnotStore& knots, const StateLayout& layout, const std::function<void(double)>& progress,
+                                 const KnotSampling& states) {
   std::vector<SmoothedKnot> smoothed(knots.size());
   BackwardRecursion backward(layout);
   for (std::size_t i = knots.size(); i-- > 0;) {
     const Knot knot = knots.at(i);
     if (i + 1 < knots.size()) backward.through_transition(knot);
-    smoothed[i] = backward.smoothed(knot);
+    const std::optional<geo::GpsTime> previous = i > 0 ? std::optional(knots.time(i - 1)) : std::nullopt;
+    smoothed[i] = backward.smoothed(knot, states.takes(previous, knots.time(i)));
     if (!smoothed[i].nav.r_eb_e.allFinite())
       throw NumericalError("smoothed state is not finite", geo::to_string(knot.post.nav.t), "the forward filter has diverged");
     for (auto update = knot.updates.rbegin(); update != knot.updates.rend(); ++update) backward.through_update(*update);

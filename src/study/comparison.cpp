@@ -23,8 +23,36 @@ ErrorSample error_of(const record::TrajectoryEpoch& estimate, const record::NavS
   return e;
 }
 
-Comparison::Comparison(const record::Trajectory& reference, Eigen::Vector3d lever_arm_b)
-    : reference_(reference), lever_arm_b_(std::move(lever_arm_b)) {}
+void ErrorStatistics::add_to(Sums& sums, const Eigen::Vector3d& value, const Eigen::Vector3d& sd) {
+  const Eigen::Array3d size = value.array().abs();
+  sums.squares.array() += size.square();
+  sums.max = sums.max.cwiseMax(size.matrix());
+  sums.inside.array() += (size <= 1.96 * sd.array()).cast<double>();
+}
+
+void ErrorStatistics::add(const ErrorSample& sample) {
+  ++epochs_;
+  add_to(position_, sample.position_n, sample.sd_position);
+  add_to(velocity_, sample.velocity_n, Eigen::Vector3d::Zero());
+  add_to(attitude_, sample.attitude, sample.sd_attitude);
+}
+
+AxisErrors ErrorStatistics::of(const Sums& sums, bool has_sd) const {
+  const double n = std::max(1.0, static_cast<double>(epochs_));
+  AxisErrors errors{(sums.squares / n).cwiseSqrt(), sums.max, std::nullopt};
+  if (has_sd) errors.inside_95 = sums.inside / n;
+  return errors;
+}
+
+ErrorSummary ErrorStatistics::summary(bool has_velocity, bool has_attitude) const {
+  ErrorSummary s{epochs_, of(position_, true), std::nullopt, std::nullopt};
+  if (has_velocity) s.velocity = of(velocity_, false);
+  if (has_attitude) s.attitude = of(attitude_, true);
+  return s;
+}
+
+Comparison::Comparison(const record::Trajectory& reference, Eigen::Vector3d lever_arm_b, Sink sink)
+    : reference_(reference), lever_arm_b_(std::move(lever_arm_b)), sink_(std::move(sink)) {}
 
 void Comparison::add(const record::TrajectoryEpoch& epoch) {
   const auto& states = reference_.states;
@@ -41,28 +69,11 @@ void Comparison::add(const record::TrajectoryEpoch& epoch) {
       rate = mean_rate(previous_->nav, epoch.nav);
     }
     at.nav = at_point(at.nav, lever_arm_b_, rate);
-    errors_.push_back(error_of(at, states[next_]));
+    const ErrorSample error = error_of(at, states[next_]);
+    statistics_.add(error);
+    if (sink_) sink_(error);
   }
   previous_ = epoch;
-}
-
-ErrorSummary Comparison::summary() const {
-  ErrorSummary s;
-  s.epochs = errors_.size();
-  if (errors_.empty()) return s;
-  Eigen::Vector3d velocity = Eigen::Vector3d::Zero();
-  Eigen::Vector3d attitude = Eigen::Vector3d::Zero();
-  for (const ErrorSample& e : errors_) {
-    s.position_rms_m += e.position_n.cwiseAbs2();
-    s.position_max_m = s.position_max_m.cwiseMax(e.position_n.cwiseAbs());
-    velocity += e.velocity_n.cwiseAbs2();
-    attitude += e.attitude.cwiseAbs2();
-  }
-  const double n = static_cast<double>(errors_.size());
-  s.position_rms_m = (s.position_rms_m / n).cwiseSqrt();
-  if (reference_.has_velocity) s.velocity_rms_mps = (velocity / n).cwiseSqrt();
-  if (reference_.has_attitude) s.attitude_rms = (attitude / n).cwiseSqrt();
-  return s;
 }
 
 }  // namespace coast::study

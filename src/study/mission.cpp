@@ -256,7 +256,8 @@ Solution solve(const PreparedMission& mission, const estimate::FilterOptions& op
   if (smooth) filter_outputs.knots = &solution.knots;
   solution.forward = solution.filter->run(mission.start_state(*solution.filter), filter_outputs);
   if (!smooth) return solution;
-  solution.smoothed = estimate::smooth(solution.knots, solution.filter->layout(), stage(progress, "smoothing backward"));
+  solution.smoothed =
+      estimate::smooth(solution.knots, solution.filter->layout(), stage(progress, "smoothing backward"), outputs.states);
   if (outputs.smoothed)
     estimate::emit_smoothed(mission.mission(), solution.filter->layout(), solution.knots, solution.smoothed, outputs.smoothed,
                             stage(progress, "writing the smoothed trajectory"));

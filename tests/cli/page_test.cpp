@@ -105,19 +105,18 @@ StateTrack track(const std::string& name, double value) {
 }
 
 void add_reference(ProcessResult& r) {
-  AgainstReference reference;
+  AgainstReference reference{ReferenceErrors(kStart), ReferenceErrors(kStart), true, true};
   for (int i = 0; i <= 100; ++i) {
     study::ErrorSample s;
     s.t = kStart + i;
     s.position_n = {0.01, -0.02, 0.03};
     s.sd_position = Eigen::Vector3d::Constant(0.03);
     s.sd_attitude = Eigen::Vector3d::Constant(1e-3);
-    reference.forward_errors.push_back(s);
-    reference.smoothed_errors.push_back(s);
+    reference.forward.add(s);
+    reference.smoothed->add(s);
     r.separations.push_back(
         {kStart + i, {0.3, 0.4, -0.1}, {1e-4, 2e-4, 3e-4}, Eigen::Vector3d::Constant(0.2), Eigen::Vector3d::Constant(1e-4)});
   }
-  reference.has_velocity = reference.has_attitude = true;
   r.reference = reference;
 }
 
@@ -276,7 +275,7 @@ TEST_F(PageTest, WhatARunDidNotFindOutIsLeftOut) {
 TEST_F(PageTest, EveryOptionalPartMayBeAbsentAlone) {
   const std::vector<std::function<void(ProcessResult&)>> removals{
       [](ProcessResult& r) { r.reference.reset(); },
-      [](ProcessResult& r) { r.reference->smoothed_errors.clear(); },
+      [](ProcessResult& r) { r.reference->smoothed.reset(); },
       [](ProcessResult& r) { r.outages.clear(); },
       [](ProcessResult& r) { r.sweep.clear(); },
       [](ProcessResult& r) { r.lever_arm.reset(); },
@@ -301,7 +300,7 @@ TEST_F(PageTest, WithoutSmootherNothingIsCalledSmoothed) {
   config_.smooth = false;
   ProcessResult result = full_result();
   result.sweep.clear();
-  result.reference->smoothed_errors.clear();
+  result.reference->smoothed.reset();
   for (auto& o : result.outages) o.smoothed.reset();
   for (auto& s : result.states) {
     s.smoothed.clear();
@@ -418,12 +417,16 @@ TEST_F(PageTest, OutageTableStatesTheShareOfTheWay) {
 
 TEST_F(PageTest, ReferenceTableHasRmsMaximumAndShare) {
   ProcessResult result = full_result();
-  // N of forward: 100 times 0.01 m and once 0.1 m, which alone is beyond 1.96 sigma of 0.03 m.
-  result.reference->forward_errors[7].position_n.x() = -0.1;
+  // N of forward: 101 times 0.01 m and once 0.1 m, which alone is beyond 1.96 sigma of 0.03 m.
+  study::ErrorSample beyond;
+  beyond.t = kStart + 101.0;
+  beyond.position_n = {-0.1, 0.0, 0.0};
+  beyond.sd_position = Eigen::Vector3d::Constant(0.03);
+  result.reference->forward.add(beyond);
   const report::Page page = make(result);
   const auto& rows = table(page, "reference-table")->rows;
   ASSERT_EQ(rows.size(), 9U);
-  EXPECT_EQ(rows[0][2].text, number(std::sqrt((100.0 * 1e-4 + 1e-2) / 101.0)));
+  EXPECT_EQ(rows[0][2].text, number(std::sqrt((101.0 * 1e-4 + 1e-2) / 102.0)));
   EXPECT_EQ(rows[0][3].text, "0.100");
   EXPECT_EQ(rows[0][6].text, "99.0");
   EXPECT_EQ(rows[1][4].text, "0.0200");  // E, smoothed

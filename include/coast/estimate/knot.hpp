@@ -2,9 +2,11 @@
 // What the forward pass leaves behind at every knot (measurement epoch or filler), for smoother, outages and output.
 
 #include <Eigen/Core>
+#include <cmath>
 #include <cstddef>
 #include <cstdio>
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "coast/estimate/navigator.hpp"
@@ -25,11 +27,27 @@ struct Knot {
   NavRows Phi_n = NavRows(kNav, 0);
 };
 
+/// Which knots somebody keeps who has no use for all: of each interval of a fixed grid in time the first. The same ones in
+/// whatever direction one comes along.
+class KnotSampling {
+ public:
+  KnotSampling() = default;  ///< every knot
+  explicit KnotSampling(double interval_s) : interval_s_(interval_s) {}
+  /// @param previous  the knot before in time; the first knot is always taken
+  [[nodiscard]] bool takes(std::optional<geo::GpsTime> previous, geo::GpsTime t) const {
+    return !previous || !(interval_s_ > 0.0) || cell(*previous) != cell(t);
+  }
+
+ private:
+  [[nodiscard]] double cell(geo::GpsTime t) const { return std::floor(t.sow() / interval_s_); }
+  double interval_s_ = 0.0;
+};
+
 /// Knots in the order of time, read in any order. Kept in memory up to a limit, beyond it in an unnamed temporary file, so that
 /// ten hours at 10 Hz need no more memory than one.
 class KnotStore {
  public:
-  explicit KnotStore(std::size_t memory_limit_bytes = std::size_t{256} << 20);
+  explicit KnotStore(std::size_t memory_limit_bytes = std::size_t{64} << 20);
   void append(const Knot& knot);
   [[nodiscard]] std::size_t size() const { return offsets_.size(); }
   [[nodiscard]] Knot at(std::size_t index) const;

@@ -13,8 +13,8 @@ namespace coast::estimate {
 struct SmoothedKnot {
   record::NavState nav;
   record::NavCovariance cov;
-  Eigen::VectorXd x;   ///< size of the layout, navigation part zero
-  Eigen::VectorXd sd;  ///< of the errors of x (and, in e, of the navigation states)
+  Eigen::VectorXd x;   ///< size of the layout, navigation part zero; empty where not sampled
+  Eigen::VectorXd sd;  ///< of the errors of x (and, in e, of the navigation states); empty where not sampled
 };
 
 /// Fixed-interval smoothing by the backward recursion of Bryson & Frazier (1963) / de Jong (1989):
@@ -25,8 +25,10 @@ struct SmoothedKnot {
 ///
 /// Equal to the Rauch-Tung-Striebel smoother, inverts nothing larger than a measurement; r and N are at the same time the
 /// statistics for shocks and for the noise (docs/notation.md).
+/// @param states  knots that keep x and sd: of a long mission all of them would be most of its memory
 [[nodiscard]] std::vector<SmoothedKnot> smooth(const KnotStore& knots, const StateLayout& layout,
-                                               const std::function<void(double)>& progress = {});
+                                               const std::function<void(double)>& progress = {},
+                                               const KnotSampling& states = KnotSampling{});
 
 /// Smoothed epochs at the IMU's: the nominal trajectory is repeated from knot to knot and its smoothed error interpolated
 /// (position and velocity by the cubic through both ends' errors and their rates, attitude linearly), so that nothing at IMU

@@ -1,8 +1,8 @@
 #pragma once
 // A computed trajectory against a reference: errors = estimate - reference, at the reference's epochs, in its N, E, D.
 
+#include <functional>
 #include <optional>
-#include <vector>
 
 #include "coast/record/trajectory.hpp"
 
@@ -20,33 +20,61 @@ struct ErrorSample {
 /// Error of one state against another at the same instant.
 [[nodiscard]] ErrorSample error_of(const record::TrajectoryEpoch& estimate, const record::NavState& reference);
 
-/// Root mean squares; what the reference does not have is left out.
+/// Of one vector of the errors, axis by axis, SI and rad.
+struct AxisErrors {
+  Eigen::Vector3d rms = Eigen::Vector3d::Zero();
+  Eigen::Vector3d max = Eigen::Vector3d::Zero();
+  std::optional<Eigen::Vector3d> inside_95;  ///< share within 1.96 predicted sigma, where a sigma is predicted
+};
+
+/// What the reference does not have is left out.
 struct ErrorSummary {
   std::size_t epochs = 0;
-  Eigen::Vector3d position_rms_m = Eigen::Vector3d::Zero();
-  Eigen::Vector3d position_max_m = Eigen::Vector3d::Zero();
-  std::optional<Eigen::Vector3d> velocity_rms_mps;
-  std::optional<Eigen::Vector3d> attitude_rms;  ///< rad
+  AxisErrors position;
+  std::optional<AxisErrors> velocity;
+  std::optional<AxisErrors> attitude;
+};
+
+/// Sums errors up as they come: memory does not grow with the mission.
+class ErrorStatistics {
+ public:
+  void add(const ErrorSample& sample);
+  [[nodiscard]] ErrorSummary summary(bool has_velocity, bool has_attitude) const;
+
+ private:
+  struct Sums {
+    Eigen::Vector3d squares = Eigen::Vector3d::Zero();
+    Eigen::Vector3d max = Eigen::Vector3d::Zero();
+    Eigen::Vector3d inside = Eigen::Vector3d::Zero();
+  };
+  static void add_to(Sums& sums, const Eigen::Vector3d& value, const Eigen::Vector3d& sd);
+  [[nodiscard]] AxisErrors of(const Sums& sums, bool has_sd) const;
+
+  std::size_t epochs_ = 0;
+  Sums position_;
+  Sums velocity_;
+  Sums attitude_;
 };
 
 /// Takes a trajectory epoch by epoch and compares it with the reference at each of the reference's epochs.
 class Comparison {
  public:
+  using Sink = std::function<void(const ErrorSample&)>;
   /// @param lever_arm_b  from the estimate's point to the reference's, body axes, m
-  explicit Comparison(const record::Trajectory& reference, Eigen::Vector3d lever_arm_b = Eigen::Vector3d::Zero());
+  /// @param sink         gets every error, in order
+  explicit Comparison(const record::Trajectory& reference, Eigen::Vector3d lever_arm_b = Eigen::Vector3d::Zero(),
+                      Sink sink = {});
 
   void add(const record::TrajectoryEpoch& epoch);
-  [[nodiscard]] const std::vector<ErrorSample>& errors() const { return errors_; }
-  [[nodiscard]] ErrorSummary summary() const;
-  [[nodiscard]] bool has_velocity() const { return reference_.has_velocity; }
-  [[nodiscard]] bool has_attitude() const { return reference_.has_attitude; }
+  [[nodiscard]] ErrorSummary summary() const { return statistics_.summary(reference_.has_velocity, reference_.has_attitude); }
 
  private:
   const record::Trajectory& reference_;
   Eigen::Vector3d lever_arm_b_;
+  Sink sink_;
   std::optional<record::TrajectoryEpoch> previous_;
   std::size_t next_ = 0;  ///< first reference epoch not yet compared
-  std::vector<ErrorSample> errors_;
+  ErrorStatistics statistics_;
 };
 
 }  // namespace coast::study

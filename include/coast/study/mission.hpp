@@ -90,6 +90,7 @@ struct SolutionOutputs {
   record::EpochSink forward;
   record::EpochSink smoothed;
   std::function<void(const estimate::FilterState&)> at_knots;
+  estimate::KnotSampling states;  ///< smoothed knots that keep their sensor states
 };
 [[nodiscard]] Solution solve(const PreparedMission& mission, const estimate::FilterOptions& options, bool smooth,
                              const SolutionOutputs& outputs, const Progress& progress);
