@@ -31,13 +31,14 @@ void add(Decimators& to, double t, const Eigen::Vector3d& value) {
 
 }  // namespace
 
-SolutionCurves::SolutionCurves()
+SolutionCurves::SolutionCurves(double start_yaw)
     : position(three(kMainPoints)),
       velocity(three(kMainPoints)),
       attitude(three(kMainPoints)),
       sd_position(three(kSidePoints)),
       sd_velocity(three(kSidePoints)),
-      sd_attitude(three(kSidePoints)) {}
+      sd_attitude(three(kSidePoints)),
+      yaw(start_yaw) {}
 
 void NearbyFrame::move_to(const Eigen::Vector3d& r_e) {
   if (frame_ && frame_->to_ned(r_e).squaredNorm() < kFrameReach * kFrameReach) return;
@@ -50,9 +51,8 @@ TrajectoryCurves::Curves::Curves(const record::NavState& nav)
     : start(nav.t),
       local(geo::geodetic_from_ecef(nav.r_eb_e)),
       start_height(geo::geodetic_from_ecef(nav.r_eb_e).height),
-      start_yaw(geo::euler_from_dcm(local.rotation().transpose() * nav.q_b_e.toRotationMatrix()).yaw),
-      forward_yaw(start_yaw),
-      smoothed_yaw(start_yaw),
+      forward(geo::euler_from_dcm(local.rotation().transpose() * nav.q_b_e.toRotationMatrix()).yaw),
+      smoothed(forward.yaw),
       track(decimator(kMainPoints)),
       height(decimator(kMainPoints)),
       distance(decimator(kSidePoints)),
@@ -60,14 +60,14 @@ TrajectoryCurves::Curves::Curves(const record::NavState& nav)
       body_velocity(three(kMainPoints)),
       slip(decimator(kMainPoints)) {}
 
-void TrajectoryCurves::Curves::add(const record::TrajectoryEpoch& epoch, SolutionCurves& to, double& last_yaw) {
+void TrajectoryCurves::Curves::add(const record::TrajectoryEpoch& epoch, SolutionCurves& to) const {
   const record::NavState& nav = epoch.nav;
-  nearby.move_to(nav.r_eb_e);
-  const Eigen::Matrix3d C_e_n = nearby.C_e_n();
+  to.nearby.move_to(nav.r_eb_e);
+  const Eigen::Matrix3d C_e_n = to.nearby.C_e_n();
   const double t = nav.t - start;
 
   Eigen::Vector3d position_n = local.to_ned(nav.r_eb_e);
-  position_n.z() = start_height - nearby.height(nav.r_eb_e);
+  position_n.z() = start_height - to.nearby.height(nav.r_eb_e);
   const Eigen::Vector3d sd_position = epoch.cov.position.diagonal().cwiseSqrt();
   add_with_band(to.position, t, position_n, sd_position);
   cli::add(to.sd_position, t, sd_position);
@@ -77,20 +77,20 @@ void TrajectoryCurves::Curves::add(const record::TrajectoryEpoch& epoch, Solutio
   cli::add(to.sd_velocity, t, sd_velocity);
 
   const geo::Euler euler = geo::euler_from_dcm(C_e_n * nav.q_b_e.toRotationMatrix());
-  last_yaw += geo::wrap_angle(euler.yaw - last_yaw);
+  to.yaw += geo::wrap_angle(euler.yaw - to.yaw);
   const Eigen::Matrix3d J = geo::euler_jacobian(euler);
   const Eigen::Vector3d sd_attitude = (J * epoch.cov.attitude * J.transpose()).diagonal().cwiseSqrt() / geo::kDegree;
-  add_with_band(to.attitude, t, Eigen::Vector3d(euler.roll, euler.pitch, last_yaw) / geo::kDegree, sd_attitude);
+  add_with_band(to.attitude, t, Eigen::Vector3d(euler.roll, euler.pitch, to.yaw) / geo::kDegree, sd_attitude);
   cli::add(to.sd_attitude, t, sd_attitude);
 }
 
 void TrajectoryCurves::Curves::add_delivered(const record::TrajectoryEpoch& epoch) {
   const record::NavState& nav = epoch.nav;
-  add(epoch, smoothed, smoothed_yaw);
+  add(epoch, smoothed);
   const double t = nav.t - start;
   const Eigen::Vector3d position_n = local.to_ned(nav.r_eb_e);
   track.add_track(t, position_n.y(), position_n.x());
-  height.add(t, nearby.height(nav.r_eb_e));
+  height.add(t, smoothed.nearby.height(nav.r_eb_e));
 
   if (previous) travelled += 0.5 * (nav.v_eb_e.norm() + previous->v_eb_e.norm()) * (nav.t - previous->t);
   distance.add(t, travelled);
@@ -98,7 +98,7 @@ void TrajectoryCurves::Curves::add_delivered(const record::TrajectoryEpoch& epoc
 
   const Eigen::Vector3d v_eb_b = nav.q_b_e.conjugate() * nav.v_eb_e;
   cli::add(body_velocity, t, v_eb_b);
-  const Eigen::Vector3d v_eb_n = nearby.C_e_n() * nav.v_eb_e;
+  const Eigen::Vector3d v_eb_n = smoothed.nearby.C_e_n() * nav.v_eb_e;
   const double horizontal = v_eb_n.head<2>().norm();
   speed.add(t, horizontal);
   if (horizontal < kLeastSpeedOfCourse) {
@@ -106,14 +106,14 @@ void TrajectoryCurves::Curves::add_delivered(const record::TrajectoryEpoch& epoc
     return;
   }
   const double course = std::atan2(v_eb_n.y(), v_eb_n.x());
-  slip.add(t, geo::wrap_angle(course - smoothed_yaw) / geo::kDegree);
+  slip.add(t, geo::wrap_angle(course - smoothed.yaw) / geo::kDegree);
 }
 
 TrajectoryCurves::TrajectoryCurves(const record::NavState& start) : curves_(std::make_unique<Curves>(start)) {}
 TrajectoryCurves::~TrajectoryCurves() = default;
 
 void TrajectoryCurves::add_forward(const record::TrajectoryEpoch& epoch) {
-  curves_->add(epoch, curves_->forward, curves_->forward_yaw);
+  curves_->add(epoch, curves_->forward);
 }
 
 void TrajectoryCurves::add_smoothed(const record::TrajectoryEpoch& epoch) {

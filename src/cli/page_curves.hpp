@@ -13,17 +13,6 @@ namespace coast::cli {
 /// One decimator per component: N, E, D or roll, pitch, yaw or forward, right, down.
 using Decimators = std::array<report::Decimator, 3>;
 
-/// Curves over seconds since the start; angles in degrees.
-struct SolutionCurves {
-  SolutionCurves();
-  Decimators position;  ///< N, E in the tangent plane of the start, D as height loss since the start, m; band one sigma
-  Decimators velocity;  ///< N, E, D at the point, m/s; band one sigma
-  Decimators attitude;  ///< roll, pitch, yaw (unwrapped), deg; band one sigma
-  Decimators sd_position;
-  Decimators sd_velocity;
-  Decimators sd_attitude;
-};
-
 /// North-east-down at the point, renewed only where the point has moved: per epoch it costs a product instead of the
 /// inversion to geodetic coordinates. Rotation good to 3e-6 rad, height to 3e-5 m.
 class NearbyFrame {
@@ -37,21 +26,30 @@ class NearbyFrame {
   double height_ = 0.0;  ///< of the frame's origin, m
 };
 
+/// Curves over seconds since the start; angles in degrees. Forward and smoothed share nothing, for they may be drawn at once.
+struct SolutionCurves {
+  explicit SolutionCurves(double start_yaw);
+  Decimators position;  ///< N, E in the tangent plane of the start, D as height loss since the start, m; band one sigma
+  Decimators velocity;  ///< N, E, D at the point, m/s; band one sigma
+  Decimators attitude;  ///< roll, pitch, yaw (unwrapped), deg; band one sigma
+  Decimators sd_position;
+  Decimators sd_velocity;
+  Decimators sd_attitude;
+  NearbyFrame nearby;
+  double yaw;  ///< last one, unwrapped, rad
+};
+
 struct TrajectoryCurves::Curves {
   explicit Curves(const record::NavState& nav);
-  void add(const record::TrajectoryEpoch& epoch, SolutionCurves& to, double& last_yaw);
+  void add(const record::TrajectoryEpoch& epoch, SolutionCurves& to) const;
   void add_delivered(const record::TrajectoryEpoch& epoch);
 
   geo::GpsTime start;
   geo::LocalFrame local;  ///< origin at the start
   double start_height = 0.0;
-  double start_yaw = 0.0;
-  NearbyFrame nearby;
 
   SolutionCurves forward;
   SolutionCurves smoothed;
-  double forward_yaw = 0.0;  ///< last one, unwrapped, rad
-  double smoothed_yaw = 0.0;
 
   // Of the trajectory that is delivered:
   report::Decimator track;     ///< east, north

@@ -1,11 +1,13 @@
 #include "commands.hpp"
 
 #include <fmt/format.h>
+#include <tbb/parallel_invoke.h>
 
 #include <algorithm>
 #include <cmath>
 #include <map>
 
+#include "background_sink.hpp"
 #include "coast/estimate/chi_square.hpp"
 #include "coast/io/writers.hpp"
 #include "coast/report/render.hpp"
@@ -165,23 +167,32 @@ void ProcessRun::solve_and_write() {
   Scores forward_scores(truth, arm, reference_.has_value(), gaps, mission_.mission(), result_.start);
   Scores scores(truth, arm, reference_.has_value(), gaps, mission_.mission(), result_.start);
 
-  const auto deliver = [&](const record::TrajectoryEpoch& epoch) {
-    output.add(epoch);
+  BackgroundSink write_forward([&](const record::TrajectoryEpoch& epoch) { forward_output.add(epoch); });
+  BackgroundSink draw_forward([&](const record::TrajectoryEpoch& epoch) {
+    curves_.add_forward(epoch);
+    forward_scores.add(epoch);
+  });
+  BackgroundSink write([&](const record::TrajectoryEpoch& epoch) { output.add(epoch); });
+  BackgroundSink draw([&](const record::TrajectoryEpoch& epoch) {
     curves_.add_smoothed(epoch);
     scores.add(epoch);
     if (keep_gap_free) gap_free_.add(epoch);
+  });
+  const auto deliver = [&](const record::TrajectoryEpoch& epoch) {
+    write.add(epoch);
+    draw.add(epoch);
   };
   study::SolutionOutputs outputs;
   outputs.forward = [&](const record::TrajectoryEpoch& epoch) {
-    forward_output.add(epoch);
-    curves_.add_forward(epoch);
-    forward_scores.add(epoch);
+    write_forward.add(epoch);
+    draw_forward.add(epoch);
     if (!config_.smooth) deliver(epoch);
   };
   if (config_.smooth) outputs.smoothed = deliver;
   outputs.at_knots = [this](const estimate::FilterState& state) { forward_knots_.add(state); };
   outputs.states = forward_knots_.sampling();
   solution_ = study::solve(mission_, options, config_.smooth, outputs, progress_);
+  for (BackgroundSink* sink : {&write_forward, &draw_forward, &write, &draw}) sink->finish();
   forward_output.close();
   output.close();
 
@@ -234,7 +245,7 @@ void ProcessRun::study_sweep() {
 
 void ProcessRun::check_lever_arm() {
   constexpr double kPriorSd = 0.5;  // m: wide against what a tape measure misses
-  if (result_.gnss_used > 10) result_.lever_arm = study::check_lever_arm(mission_, kPriorSd, progress_);
+  if (mission_.mission().gnss.fixes.size() > 10) result_.lever_arm = study::check_lever_arm(mission_, kPriorSd, {});
 }
 
 void ProcessRun::separate_forward_and_backward() {
@@ -291,9 +302,8 @@ void process(const std::filesystem::path& run_yaml, const CommonOptions& options
 
   ProcessRun run(config, std::move(recordings), out, progress);
   run.solve_without_outages();
-  run.solve_and_write();
+  tbb::parallel_invoke([&run] { run.solve_and_write(); }, [&run] { run.check_lever_arm(); });
   run.study_sweep();
-  run.check_lever_arm();
   run.separate_forward_and_backward();
   const std::string summary = run.write_results();
   line.clear();
