@@ -68,6 +68,7 @@ class ProcessRun {
 
   void solve_without_outages();
   void solve_and_write();
+  void offer_gnss_noise();
   void study_sweep();
   void check_lever_arm();
   void separate_forward_and_backward();
@@ -232,6 +233,29 @@ void ProcessRun::count_innovations() {
   result_.nis = nis_of(result_.innovations);
 }
 
+// Of sigmas that do not fit it is said what would fit.
+void ProcessRun::offer_gnss_noise() {
+  constexpr double kFits = 1.25;        // rms of the innovations over their sigma, or its inverse
+  constexpr std::size_t kFewest = 100;  // epochs; fewer say little
+  constexpr double kWindow = 300.0;     // s
+  const double ratio = std::sqrt(result_.nis.mean / result_.nis.expected);
+  if (result_.noise_fit || result_.nis.epochs < kFewest || (ratio < kFits && ratio > 1.0 / kFits)) return;
+  constexpr estimate::NoiseFitChoice kGnssAlone{.gnss_scale = true, .correlated_gnss = true, .imu_white_noise = false};
+  const estimate::NoiseFit fit =
+      mission_.fit(kGnssAlone, estimate::starting_point(mission_.options(), kGnssAlone), kWindow, progress_);
+  const estimate::GnssScale& scale = fit.adjustment.gnss_scale;
+  const estimate::CorrelatedGnss& correlated = fit.adjustment.correlated_gnss;
+  result_.events.push_back(
+      {record::Event::Severity::kWarning, "gnss_sigmas_do_not_fit",
+       fmt::format(
+           "Innovations are {:.2g} times their sigma. The first {:.0f} s are likeliest with the GNSS sigmas times {:.2g} "
+           "horizontally and {:.2g} vertically, and errors of {:.2g} and {:.2g} m that last {:.2g} s beside them. Set "
+           "`gnss.noise: estimated` to have this fitted and used, `imu.noise: estimated` where the IMU shakes.",
+           ratio, std::min(kWindow, result_.end - result_.start), scale.horizontal, scale.vertical, correlated.horizontal_m,
+           correlated.vertical_m, correlated.time_s),
+       std::nullopt, 1});
+}
+
 void ProcessRun::study_sweep() {
   if (!config_.sweep || !config_.smooth) return;
   const record::Trajectory& truth = reference_ ? *reference_ : gap_free_.trajectory();
@@ -303,6 +327,7 @@ void process(const std::filesystem::path& run_yaml, const CommonOptions& options
   ProcessRun run(config, std::move(recordings), out, progress);
   run.solve_without_outages();
   tbb::parallel_invoke([&run] { run.solve_and_write(); }, [&run] { run.check_lever_arm(); });
+  run.offer_gnss_noise();
   run.study_sweep();
   run.separate_forward_and_backward();
   const std::string summary = run.write_results();

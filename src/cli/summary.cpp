@@ -161,6 +161,8 @@ std::string summary_text(const ProcessResult& result) {
                                  result.end - result.start, result.gnss_used, result.gnss_epochs, result.gnss_rejected,
                                  result.nis.mean, result.nis.expected);
   text += "start: " + result.alignment + "\n";
+  for (const record::Event& event : result.events)
+    if (event.kind == "gnss_sigmas_do_not_fit") text += "warning: " + event.text + "\n";
   if (result.reference) {
     const AgainstReference& r = *result.reference;
     const Eigen::Vector3d rms = r.summary(r.smoothed ? *r.smoothed : r.forward).position.rms;

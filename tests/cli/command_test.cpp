@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 #include <sys/wait.h>
 
+#include <algorithm>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
@@ -71,6 +72,27 @@ const fs::path& recording() {
     return folder.path() / "rec";
   }();
   return made;
+}
+
+TEST(Commands, OffersGnssNoiseWhereTheStatedSigmasDoNotFit) {
+  const test::TemporaryDirectory folder;
+  std::string yaml = text_of(recording() / "run.yaml");
+  const std::string gnss = "gnss: {";
+  const auto at = yaml.find(gnss);
+  ASSERT_NE(at, std::string::npos) << yaml;
+  yaml.insert(at + gnss.size(), "noise: {scale_horizontal: 3, scale_vertical: 3}, ");
+  write(recording() / "pessimistic.yaml", yaml);
+  const fs::path out = folder.path() / "out";
+  const Outcome outcome =
+      run(fmt::format("process '{}' --out '{}'", (recording() / "pessimistic.yaml").string(), out.string()), folder.path());
+  ASSERT_EQ(outcome.status, 0) << outcome.error;
+  const auto summary = nlohmann::json::parse(text_of(out / "summary.json"));
+  const auto& events = summary["events"];
+  const auto offer = std::find_if(events.begin(), events.end(),
+                                  [](const nlohmann::json& event) { return event["kind"] == "gnss_sigmas_do_not_fit"; });
+  ASSERT_NE(offer, events.end()) << events;
+  // The sigmas were right before they were trebled; 1350 epochs know a scale to 2 %.
+  EXPECT_NE((*offer)["text"].get<std::string>().find("times 1 horizontally"), std::string::npos) << *offer;
 }
 
 TEST(Commands, ProcessesWhatSimulateWroteAndRepeatsItFromTheResolvedFile) {
