@@ -91,6 +91,7 @@ void ForwardPass::begin(const Navigator::Start& start, const Eigen::MatrixXd& P)
   transition_.reset();
   cov_at_start_ = nav_covariance_n(P.topLeftCorner<kNav, kNav>(), start.nav.r_eb_e);
   last_constraint_ = start.nav.t;
+  last_used_ = start.nav.t;
 }
 
 void ForwardPass::skip_fixes(geo::GpsTime before) {
@@ -248,9 +249,12 @@ void ForwardPass::vehicle_updates() {
 void ForwardPass::try_update(const Linearised& measurement, record::FixQuality quality) {
   Innovation step = innovation(state_, measurement);
   const bool used = !gate_refuses(measurement, step.nis);
-  if (used && gate_state_ == GateState::kOpen && measurement.kind == UpdateKind::kGnssPosition) {
-    admit_doubt(measurement.nu);
-    step = innovation(state_, measurement);
+  if (used && measurement.kind == UpdateKind::kGnssPosition) {
+    if (gate_state_ == GateState::kOpen && !coasting()) {
+      admit_doubt(measurement.nu);
+      step = innovation(state_, measurement);
+    }
+    last_used_ = state_.nav.t;
   }
   record_innovation(measurement, step, used, quality);
   if (!used) return;
@@ -280,6 +284,12 @@ bool ForwardPass::gate_refuses(const Linearised& measurement, double nis) {
                               state_.nav.t, 1});
   }
   return gate_state_ == GateState::kRefusing;
+}
+
+// Behind an outage the filter is not confident: its drift was larger than it thought, and everything that drifted along has to
+// be corrected in proportion, which an uncertainty of the position alone would prevent, in the smoother above all.
+bool ForwardPass::coasting() const {
+  return first_refused_ - last_used_ > options_.gate_patience_s;
 }
 
 // A fix that the filter holds for impossible is taken: the position is as uncertain as it differs, and the velocity as if it

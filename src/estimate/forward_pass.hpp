@@ -40,6 +40,7 @@ class ForwardPass {
   void vehicle_updates();
   void try_update(const Linearised& measurement, record::FixQuality quality);
   [[nodiscard]] bool gate_refuses(const Linearised& measurement, double nis);
+  [[nodiscard]] bool coasting() const;
   void admit_doubt(const Eigen::Vector3d& nu);
   void record_innovation(const Linearised& measurement, const Innovation& innovation, bool used, record::FixQuality quality);
   void emit_epochs(const record::NavCovariance& at_end);
@@ -65,6 +66,7 @@ class ForwardPass {
   std::size_t next_fix_ = 0;
   geo::GpsTime last_constraint_;
   geo::GpsTime first_refused_;
+  geo::GpsTime last_used_;  ///< position fix
   enum class GateState { kClosed, kRefusing, kOpen } gate_state_ = GateState::kClosed;
   double missing_share_ = 0.0;  ///< of the sample at hand
   double gap_ = 0.0;            ///< s of missing IMU since the last knot

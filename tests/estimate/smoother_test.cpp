@@ -262,6 +262,44 @@ accel: {all: [{process: white_noise, density: 2000, unit: ug/sqrt(Hz)}, {process
   EXPECT_GT(largest_forward, 100.0);
 }
 
+// A push that no error model knows, at the beginning of an outage: the first fixes behind it lie outside the gate and are
+// refused for a while. Once they are believed, the smoother must carry them back into the outage.
+TEST(Smoother, BelievesTheFixesBehindAnOutageThatDriftedFurtherThanPredicted) {
+  const noise::ImuErrorModel model = test::error_model(test::kIndustrialModel);
+  simulate::GnssOptions gnss;
+  gnss.rate_hz = 4.0;
+  test::Recording recording = test::make_recording({.duration = 130.0, .gnss = gnss}, &model, 4);
+  const geo::GpsTime from = test::mission_start() + 50.0, to = from + 40.0;
+  constexpr double kPush = 0.3;  // m/s^2 for 5 s: 56 m at the end
+  for (record::ImuSample& sample : recording.imu.samples)
+    if (sample.t > from && sample.t < from + 5.0) sample.dv.x() += kPush * sample.dt;
+  FilterOptions options;
+  options.withheld.push_back({from, to});
+  const Mission mission = recording.mission();
+  const ForwardFilter filter(mission, model, options);
+  std::mt19937_64 random(9);
+  KnotStore store;
+  double forward = 0.0, predicted = 0.0;
+  FilterOutputs outputs;
+  outputs.knots = &store;
+  outputs.at_knots = [&](const FilterState& state) {
+    if (state.nav.t < from || state.nav.t > to) return;
+    forward = std::max(forward, (state.nav.r_eb_e - recording.truth(state.nav.t).r_eb_e).norm());
+    predicted = std::max(predicted, std::sqrt(state.P.diagonal().head<3>().maxCoeff()));
+  };
+  const FilterResult result =
+      filter.run(test::drawn_start(filter, recording.truth(test::mission_start()), {}, random), outputs);
+  EXPECT_GT(forward, 5.0 * predicted);
+  ASSERT_FALSE(result.events.empty());
+  EXPECT_EQ(result.events.front().kind, "gate_opened");
+  double smoothed = 0.0;
+  for (const SmoothedKnot& knot : smooth(store, filter.layout()))
+    if (knot.nav.t > from && knot.nav.t < to)
+      smoothed = std::max(smoothed, (knot.nav.r_eb_e - recording.truth(knot.nav.t).r_eb_e).norm());
+  // What the smoother has for a step of velocity at one end is a steady acceleration between both: a quarter of the drift.
+  EXPECT_LT(smoothed, 0.35 * forward);
+}
+
 // At knots the emitted epochs are the smoothed knots; between them the trajectory obeys its own velocity.
 TEST_F(SmootherTest, EmittedEpochsPassThroughTheKnots) {
   std::vector<record::TrajectoryEpoch> epochs;
