@@ -6,12 +6,29 @@
 #include <cstdio>
 #include <system_error>
 
+#include "coast/geo/leap_seconds.hpp"
 #include "coast/geo/rotation.hpp"
 #include "coast/ins/mounting.hpp"
 #include "coast/io/inspect.hpp"
 #include "coast/record/error.hpp"
 
 namespace coast::cli {
+
+namespace {
+
+// Nobody knows the leap seconds of years to come: beyond the table's last word a file in UTC may be a second off.
+void check_leap_seconds(const io::TimeOptions& time, const std::string& source, geo::GpsTime last, record::Events& events) {
+  const geo::GpsTime expiry = geo::leap_second_table().expiry;
+  if ((time.kind != io::TimeKind::kUtc && time.kind != io::TimeKind::kUnix) || last <= expiry) return;
+  events.push_back(
+      {record::Event::Severity::kWarning, "leap_seconds_expired",
+       fmt::format("{}: times in UTC, and this machine's leap seconds are known until {} only: should one have been "
+                   "inserted since, every time is a second off. Install newer time-zone data (tzdata).",
+                   source, geo::to_string(expiry)),
+       std::nullopt, 1});
+}
+
+}  // namespace
 
 Recordings load(const RunConfig& config) {
   Recordings recordings;
@@ -26,6 +43,8 @@ Recordings load(const RunConfig& config) {
   io::Inspection inspection = io::inspect(recordings.imu, recordings.gnss);
   recordings.inspection = std::move(inspection.sentences);
   recordings.inspection_events = std::move(inspection.events);
+  check_leap_seconds(config.imu.time, recordings.imu.source, recordings.imu.samples.back().t, recordings.inspection_events);
+  check_leap_seconds(config.gnss.time, recordings.gnss.source, recordings.gnss.fixes.back().t, recordings.inspection_events);
   if (config.reference) recordings.reference = io::read_reference(*config.reference, recordings.imu.samples.front().t);
   return recordings;
 }

@@ -320,6 +320,30 @@ std::vector<fs::path> yaml_files(const char* folder) {
   return files;
 }
 
+TEST(Load, SaysThatLeapSecondsHaveExpired) {
+  const test::TemporaryDirectory folder;
+  // 2099-12-31 in GPS weeks and in POSIX seconds; no table reaches that far.
+  std::string imu = "time_s,gyro_x_radps,gyro_y_radps,gyro_z_radps,accel_x_mps2,accel_y_mps2,accel_z_mps2\n";
+  for (int i = 0; i < 200; ++i) imu += fmt::format("{:.2f},0,0,0,0,0,-9.8\n", 345600.0 + 0.01 * i);
+  write(folder.path() / "imu.csv", imu);
+  write(folder.path() / "model.yaml", kModel);
+  const auto events_of = [&](std::int64_t unix_s) {
+    std::string gnss;
+    for (int i = 0; i < 3; ++i) gnss += fmt::format("{},46.5,6.5,400\n", unix_s + i);
+    write(folder.path() / "gnss.csv", gnss);
+    write(
+        folder.path() / "run.yaml",
+        "imu: {file: imu.csv, gps_week: 6260, error_model: model.yaml, lever_arm_m: [0, 0, 0]}\n"
+        "gnss: {file: gnss.csv, format: csv, columns: {time: 1, position: [2, 3, 4]}, sd_m: [1, 1, 1], time: {kind: unix}}\n");
+    return load(read_run_config(folder.path() / "run.yaml")).inspection_events;
+  };
+  const auto expired = [](const record::Events& found) {
+    return std::ranges::count_if(found, [](const record::Event& event) { return event.kind == "leap_seconds_expired"; });
+  };
+  EXPECT_EQ(expired(events_of(4102358400)), 1);
+  EXPECT_EQ(expired(events_of(1577836800)), 0);  // 2020-01-01
+}
+
 TEST(Recordings, EveryShippedRunFileFitsItsRecording) {
   if (!test::data_dir()) GTEST_SKIP() << "COAST_DATA is not set: the real recordings are not at hand";
   for (const fs::path& file : yaml_files("recordings")) {
