@@ -85,13 +85,17 @@ void PreparedMission::fit_and_adopt(const Progress& progress) {
   const estimate::FilterOptions stated = setup_.filter;
   setup_.filter.gate_probability = 0.0;
   refine_start(progress);
-  estimate::NoiseAdjustment from = estimate::starting_point(stated, *setup_.noise_fit);
+  const estimate::NoiseAdjustment first = estimate::starting_point(stated, *setup_.noise_fit);
+  estimate::NoiseAdjustment from = first;
   for (const double window : {kRefineWindow, kFitWindow}) {
     setup_.model = stated_model;
     setup_.filter = stated;
     noise_fit_ = fit(*setup_.noise_fit, from, window, progress);
     adopt(*noise_fit_);
+    // A correlated error that was found to be nothing begins small again: at nothing its gradient vanishes.
     from = noise_fit_->adjustment;
+    from.correlated_gnss.horizontal_m = std::max(from.correlated_gnss.horizontal_m, first.correlated_gnss.horizontal_m);
+    from.correlated_gnss.vertical_m = std::max(from.correlated_gnss.vertical_m, first.correlated_gnss.vertical_m);
     refine_start(progress);
     refine_antenna(progress);
   }
