@@ -1,4 +1,4 @@
-#include "coast/estimate/chi_square.hpp"
+#include "coast/noise/chi_square.hpp"
 
 #include <gtest/gtest.h>
 
@@ -18,8 +18,8 @@ TEST(ChiSquare, PublishedQuantiles) {
   for (const Quantile& q : {Quantile{1, 0.05, 3.84146}, Quantile{2, 0.05, 5.99147}, Quantile{3, 0.05, 7.81473},
                             Quantile{3, 0.001, 16.2662}, Quantile{4, 0.01, 13.2767}, Quantile{5, 0.05, 11.0705},
                             Quantile{7, 0.95, 2.16735}, Quantile{10, 0.005, 25.1882}, Quantile{30, 0.5, 29.3360}}) {
-    EXPECT_NEAR(estimate::chi2_upper_quantile(q.dof, q.p), q.x, 6e-6 * q.x) << q.dof << " " << q.p;
-    EXPECT_NEAR(estimate::chi2_survival(q.dof, estimate::chi2_upper_quantile(q.dof, q.p)), q.p, 1e-12);
+    EXPECT_NEAR(noise::chi2_upper_quantile(q.dof, q.p), q.x, 6e-6 * q.x) << q.dof << " " << q.p;
+    EXPECT_NEAR(noise::chi2_survival(q.dof, noise::chi2_upper_quantile(q.dof, q.p)), q.p, 1e-12);
   }
 }
 
@@ -35,10 +35,10 @@ TEST(ChiSquare, SurvivalIsTheIntegralOfTheDensity) {
     double sum = density(from) + density(to);
     for (int i = 1; i < n; ++i) sum += (i % 2 == 1 ? 4.0 : 2.0) * density(from + (to - from) * i / n);
     const double integral = sum * (to - from) / n / 3.0;
-    EXPECT_NEAR(estimate::chi2_survival(dof, from) - estimate::chi2_survival(dof, to), integral, 1e-13) << dof;
+    EXPECT_NEAR(noise::chi2_survival(dof, from) - noise::chi2_survival(dof, to), integral, 1e-13) << dof;
   }
-  EXPECT_EQ(estimate::chi2_survival(3, 0.0), 1.0);
-  EXPECT_NEAR(estimate::chi2_survival(1, 1.0), std::erfc(std::sqrt(0.5)), 1e-15);
+  EXPECT_EQ(noise::chi2_survival(3, 0.0), 1.0);
+  EXPECT_NEAR(noise::chi2_survival(1, 1.0), std::erfc(std::sqrt(0.5)), 1e-15);
 }
 
 }  // namespace

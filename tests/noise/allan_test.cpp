@@ -1,0 +1,1 @@
+#include "coast/noise/allan.hpp"
