@@ -77,11 +77,11 @@ void AllanAccumulator::flush() {
   const std::span<const double> samples(pending_.data(), pending_count_);
   if (samples.empty()) return;
   const auto bad = std::ranges::find_if_not(samples, [](double sample) { return std::isfinite(sample); });
+  pending_count_ = 0;
   if (bad != samples.end())
     throw std::invalid_argument(fmt::format("AllanAccumulator: sample {} is {}; leave it out and call gap()",
                                             samples_ + static_cast<std::uint64_t>(bad - samples.begin()), *bad));
   samples_ += samples.size();
-  pending_count_ = 0;
   if (!sums_->pyramid && samples_ > sums_->full_overlap_samples) sums_->become_pyramid();
   if (sums_->pyramid)
     sums_->pyramid->add(samples);
@@ -98,6 +98,10 @@ AllanCurve AllanAccumulator::finish() {
   gap();
   const bool full = !sums_->pyramid;
   const std::vector<DifferenceSums> sums = full ? sums_->full_overlap() : sums_->pyramid->sums();
+  samples_ = 0;
+  sums_->kept = {};
+  sums_->starts = {};
+  sums_->pyramid.reset();
   return make_curve(interval_, sums_->factors, sums, full);
 }
 

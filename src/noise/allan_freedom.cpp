@@ -25,7 +25,7 @@ double integral_covariance(NoiseType noise, int order, double lag) {
     case NoiseType::kFlicker:
       return t > 0.0 ? t * t * std::log(t) : 0.0;
     case NoiseType::kRamp:
-      // The Allan variance of f^-4 noise does not exist: its terms are at most as dependent as those of the longest record.
+      // The Allan variance of f^-4 noise does not exist; its terms are taken for a random walk's.
       if (order == 3) return -t * t * t * t * t;
       [[fallthrough]];
     case NoiseType::kRandomWalk:

@@ -33,7 +33,7 @@ struct Deviation {
   std::uint64_t terms = 0;  ///< squares of differences in the mean
   double edf = 0.0;         ///< equivalent degrees of freedom of these terms under the point's noise type
   double edf_lost = 0.0;    ///< share of the full overlap's degrees of freedom that the stride gave away; 0 with full overlap
-  Interval interval_68{};     ///< of the deviation, by chi-square: coverage 0.6827
+  Interval interval_68{};   ///< of the deviation, by chi-square: coverage 0.6827
   Interval interval_95{};
 };
 
@@ -57,7 +57,7 @@ struct AllanOptions {
 };
 
 /// Collects samples of one axis at equal intervals and yields the curve. Memory: 8 bytes per sample up to
-/// `full_overlap_samples`, 2 MB for any length beyond that.
+/// `full_overlap_samples`, then these are let go and 2 MB serve any length.
 ///
 /// With y the average over m samples (tau = m dt) the estimators are the means over all starts of
 ///
@@ -94,7 +94,7 @@ class AllanAccumulator {
   void add_increment(double increment) { add(increment / interval_); }
   /// Samples are missing here, however many: nothing is interpolated, and no difference is taken across.
   void gap();
-  /// The curve, up to the longest tau at which both variances have a term. Ends the record: nothing can be added after it.
+  /// The curve, up to the longest tau at which both variances have a term. Leaves the accumulator empty.
   /// @throws std::invalid_argument  a sample was not finite (here, in add or in gap: samples are looked at in blocks)
   [[nodiscard]] AllanCurve finish();
 
