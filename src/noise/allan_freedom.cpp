@@ -54,7 +54,7 @@ double quantisation_sum(const DifferencePlan& plan, double terms) {
   for (int i = 1; i <= plan.order; ++i) {
     const auto at = static_cast<std::size_t>(i - 1);
     const double correlation = plan.order == 2 ? second[at] : third[at];
-    const double lag = static_cast<double>(i) * static_cast<double>(plan.factor / plan.stride);
+    const double lag = i * static_cast<double>(plan.factor) / static_cast<double>(plan.stride);
     if (lag < terms) sum += 2.0 * (1.0 - lag / terms) * correlation * correlation;
   }
   return sum;

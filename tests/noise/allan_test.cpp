@@ -82,7 +82,7 @@ TEST(Allan, DefinitionByBruteForceOverGapsInBothModes) {
   for (const std::uint64_t full : {std::uint64_t{1} << 20U, std::uint64_t{0}}) {
     std::vector<std::vector<double>> runs;
     AllanAccumulator accumulator(0.02, {.points_per_decade = 4, .full_overlap_samples = full});
-    for (const std::size_t length : {3000, 2, 7001, 2433}) {
+    for (const std::size_t length : {3000U, 2U, 7001U, 2433U}) {
       runs.push_back(test::random_walk_samples(length, 0.1, length));
       for (double& rate : runs.back()) rate -= 9.8;
       accumulator.add(runs.back());
@@ -218,8 +218,8 @@ TEST(Allan, ARecordLeavesNothingBehindAndLongOnesTakeNoMemory) {
 
 TEST(Allan, WhatIsNotASampleIsRefused) {
   EXPECT_THROW(AllanAccumulator(0.0), std::invalid_argument);
-  EXPECT_THROW(AllanAccumulator(std::numeric_limits<double>::quiet_NaN()), std::invalid_argument);
-  EXPECT_THROW(AllanAccumulator(1.0, {.points_per_decade = 0}), std::invalid_argument);
+  EXPECT_THROW((void)AllanAccumulator{std::numeric_limits<double>::quiet_NaN()}, std::invalid_argument);
+  EXPECT_THROW((void)AllanAccumulator(1.0, {.points_per_decade = 0}), std::invalid_argument);
   AllanAccumulator accumulator(1.0);
   accumulator.add(1.0);
   accumulator.add(std::numeric_limits<double>::infinity());
