@@ -6,7 +6,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "coast/estimate/chi_square.hpp"
+#include "coast/noise/chi_square.hpp"
 #include "page_parts.hpp"
 
 namespace coast::cli {
@@ -91,9 +91,9 @@ report::Panel nis_panel(const ProcessPage& page, const Records& positions, const
   add(velocities, "velocity", report::Tone::kForward, report::Tone::kY);
   add(positions, "position", report::Tone::kMuted, report::Tone::kSmoothed);
   plot.bounds.push_back({3.0, "expected 3", report::Tone::kGood});
-  plot.bounds.push_back({estimate::chi2_upper_quantile(3, 1e-3), "99.9 %", report::Tone::kWarn});
+  plot.bounds.push_back({noise::chi2_upper_quantile(3, 1e-3), "99.9 %", report::Tone::kWarn});
   const double gate = page.mission.options().gate_probability;
-  if (gate > 0.0) plot.bounds.push_back({estimate::chi2_upper_quantile(3, gate), "gate", report::Tone::kBad});
+  if (gate > 0.0) plot.bounds.push_back({noise::chi2_upper_quantile(3, gate), "gate", report::Tone::kBad});
   plot.y.range = {0.03, std::max(100.0, 2.0 * highest)};
   report::shade(panel, outage_intervals(page));
   return panel;

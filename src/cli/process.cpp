@@ -8,8 +8,8 @@
 #include <map>
 
 #include "background_sink.hpp"
-#include "coast/estimate/chi_square.hpp"
 #include "coast/io/writers.hpp"
+#include "coast/noise/chi_square.hpp"
 #include "coast/report/render.hpp"
 #include "load.hpp"
 #include "process_page.hpp"
@@ -219,7 +219,7 @@ void ProcessRun::note_scores(const std::vector<study::Outage>& gaps, const Score
 void ProcessRun::count_innovations() {
   // An error along the axis the filter knows least is refused from sqrt(threshold) of its sigma on.
   const double probability = mission_.options().gate_probability;
-  const double gate = probability > 0.0 ? std::sqrt(estimate::chi2_upper_quantile(3, probability)) : 0.0;
+  const double gate = probability > 0.0 ? std::sqrt(noise::chi2_upper_quantile(3, probability)) : 0.0;
   std::vector<double> blind;
   for (const estimate::InnovationRecord& r : result_.innovations) {
     if (r.kind != estimate::UpdateKind::kGnssPosition) continue;

@@ -5,8 +5,8 @@
 #include <Eigen/Eigenvalues>
 #include <cmath>
 
-#include "coast/estimate/chi_square.hpp"
 #include "coast/geo/earth.hpp"
+#include "coast/noise/chi_square.hpp"
 #include "coast/record/error.hpp"
 
 namespace coast::estimate {
@@ -54,7 +54,7 @@ ForwardPass::ForwardPass(const Mission& mission, const StateLayout& layout, cons
   gate_.fill(std::numeric_limits<double>::infinity());
   if (options.gate_probability > 0.0)
     for (int dof = 1; dof <= 3; ++dof)
-      gate_[static_cast<std::size_t>(dof)] = chi2_upper_quantile(dof, options.gate_probability);
+      gate_[static_cast<std::size_t>(dof)] = noise::chi2_upper_quantile(dof, options.gate_probability);
 }
 
 void ForwardPass::start(const FilterState& state) {

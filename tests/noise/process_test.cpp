@@ -91,6 +91,70 @@ TEST_P(EveryProcess, EntryWrittenInSiMakesTheSameProcess) {
   }
 }
 
+/// Nodes and weights of Gauss and Legendre on (0, 1), exact for polynomials up to degree 39.
+struct Quadrature {
+  std::vector<double> at, weight;
+  Quadrature() {
+    const int n = 20;
+    for (int i = 1; i <= n; ++i) {
+      double x = std::cos(M_PI * (i - 0.25) / (n + 0.5)), slope = 0.0;
+      for (int newton = 0; newton < 8; ++newton) {
+        double before = 1.0, p = x;
+        for (int k = 2; k <= n; ++k) {
+          const double next = ((2.0 * k - 1.0) * x * p - (k - 1.0) * before) / k;
+          before = p;
+          p = next;
+        }
+        slope = n * (x * p - before) / (x * x - 1.0);
+        x -= p / slope;
+      }
+      at.push_back(0.5 * (1.0 + x));
+      weight.push_back(1.0 / ((1.0 - x * x) * slope * slope));
+    }
+  }
+};
+
+/// The variance of sum_i weights[i] * (integral of the error over the i-th interval of length tau), from the state-space block:
+/// the double integral of h Phi(t - s) P(s) h', smooth in each cell off the diagonal and in each triangle on it.
+double variance_by_propagation(const noise::Process& process, double tau, const std::vector<double>& weights) {
+  const Quadrature gauss;
+  const auto covariance = [&](double s, double t) {  // s < t
+    const auto from_start = block_of(process, s), onwards = block_of(process, t - s);
+    return (onwards.h * onwards.Phi * (from_start.Phi * from_start.P * from_start.Phi.transpose() + from_start.Q_d) *
+            onwards.h.transpose())(0, 0);
+  };
+  double sum = 0.0;
+  for (std::size_t i = 0; i < weights.size(); ++i) {
+    sum += weights[i] * weights[i] * process.white_density().value * tau;
+    for (std::size_t j = 0; j <= i && process.states() > 0; ++j)
+      for (std::size_t p = 0; p < gauss.at.size(); ++p)
+        for (std::size_t q = 0; q < gauss.at.size(); ++q) {
+          const double t = gauss.at[p], s = i == j ? t * gauss.at[q] : gauss.at[q], area = i == j ? t : 1.0;
+          sum += 2.0 * weights[i] * weights[j] * tau * tau * area * gauss.weight[p] * gauss.weight[q] *
+                 covariance(tau * (static_cast<double>(j) + s), tau * (static_cast<double>(i) + t));
+        }
+  }
+  return sum;
+}
+
+TEST_P(EveryProcess, ClosedFormVariancesAreThoseOfTheBlock) {
+  for (const auto& process : processes_of(GetParam().text(), GetParam().sensor)) {
+    for (const double tau : {0.01, 1.0, 700.0, 1400.0, 9000.0}) {
+      const auto allan = process->allan_variance(tau), hadamard = process->hadamard_variance(tau);
+      EXPECT_EQ(allan.has_value(), process->input() == noise::Input::kOne);
+      EXPECT_EQ(hadamard.has_value(), process->input() == noise::Input::kOne);
+      if (!allan || !hadamard) continue;
+      // A bias is differenced away: what rounding leaves of its variance, and of each term of the sums.
+      const double rounding =
+          process->states() == 0 ? 0.0 : 1e-14 * variance_by_propagation(*process, tau, {1.0}) / (tau * tau);
+      const double by_block = variance_by_propagation(*process, tau, {1.0, -1.0}) / (2.0 * tau * tau);
+      EXPECT_NEAR(*allan, by_block, 1e-11 * by_block + rounding) << tau;
+      const double third = variance_by_propagation(*process, tau, {1.0, -2.0, 1.0}) / (6.0 * tau * tau);
+      EXPECT_NEAR(*hadamard, third, 1e-11 * third + rounding) << tau;
+    }
+  }
+}
+
 // A spoiled entry is an error that names the line of what is wrong (the entry stands alone on line 1).
 TEST_P(EveryProcess, SpoiledEntriesAreRefusedWithTheirLine) {
   const std::string good = GetParam().text();
@@ -197,6 +261,26 @@ TEST(RandomWalk, VarianceGrowsFromZeroWithTime) {
   EXPECT_EQ(block.P(0, 0), 0.0);
   EXPECT_EQ(block.Phi(0, 0), 1.0);
   EXPECT_NEAR(block.Q_d(0, 0), density * density * 1234.5, 1e-14 * density * density * 1234.5);
+}
+
+// At small beta tau the closed forms are a walk's of density 2 beta sigma^2, less 3/4 of beta tau (Allan); Hadamard's differs
+// from it in the second order only.
+TEST(GaussMarkov, VariancesKeepTheirDigitsWhereTheProcessHasHardlyMoved) {
+  const double sigma = 2e-4, time = 2500.0;
+  const auto process =
+      process_of("{process: gauss_markov, sigma: 2e-4, unit: m/s^2, correlation_time_s: 2500}", Sensor::kAccel);
+  for (const double tau : {1e-4, 1e-2}) {
+    const double u = tau / time;
+    const double walk = 2.0 * sigma * sigma * u;
+    EXPECT_NEAR(*process->allan_variance(tau), walk / 3.0 * (1.0 - 0.75 * u), 1e-10 * walk);
+    EXPECT_NEAR(*process->hadamard_variance(tau), walk / 6.0, 1e-10 * walk);
+  }
+}
+
+TEST(RandomConstant, HasNoAllanVariance) {
+  const auto process = process_of("{process: random_constant, sigma: 1, unit: mg}", Sensor::kAccel);
+  EXPECT_EQ(process->allan_variance(3.0), 0.0);
+  EXPECT_EQ(process->hadamard_variance(3.0), 0.0);
 }
 
 TEST(RandomConstant, StaysWhatItWas) {

@@ -157,6 +157,8 @@ class IntegratedWalk final : public noise::Process {
   }
   void output(Eigen::Ref<Eigen::RowVectorXd> h) const override { h << 1.0, 0.0; }
   void initial_covariance(Eigen::Ref<Eigen::MatrixXd> P) const override { P.setZero(); }
+  std::optional<double> allan_variance(double) const override { return {}; }     // grows with the length of the record
+  std::optional<double> hadamard_variance(double) const override { return {}; }  // nobody asks for it here
   std::string yaml() const override { return ""; }
 };
 

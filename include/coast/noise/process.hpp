@@ -3,6 +3,7 @@
 
 #include <Eigen/Core>
 #include <memory>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -41,6 +42,11 @@ class Process {
   virtual void initial_covariance(Eigen::Ref<Eigen::MatrixXd> P) const = 0;
   /// Density of the white part of the output, [signal]^2/Hz; zero for a process that has states only.
   [[nodiscard]] virtual geo::Psd white_density() const { return {}; }
+  /// Allan variance of the error at averaging time tau (s, > 0), [signal]^2. Nothing for a process that multiplies the true
+  /// signal, and where the variance does not exist. The Haar wavelet variance at the same scale is half of it.
+  [[nodiscard]] virtual std::optional<double> allan_variance(double tau) const = 0;
+  /// Hadamard variance, [signal]^2, as above.
+  [[nodiscard]] virtual std::optional<double> hadamard_variance(double tau) const = 0;
   /// The entry of an error-model file that makes this process again, in SI units.
   [[nodiscard]] virtual std::string yaml() const = 0;
 };
