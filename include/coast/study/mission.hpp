@@ -34,9 +34,9 @@ struct Setup {
 /// A mission in body axes, aligned. Owns its recordings.
 class PreparedMission {
  public:
-  /// Compensates, finds standstill, fits the noise where the setup asks for it, aligns and refines the start (a given start is
-  /// taken as it is): from where alignment succeeded the
-  /// filter runs back to the first epoch, then the first minutes are smoothed and the start taken from there until it rests.
+  /// Compensates, finds standstill, aligns, fits the noise where the setup asks for it and refines the start: from where
+  /// alignment succeeded the filter runs back to the first epoch, then the first minutes are smoothed and the start taken from
+  /// there until it rests. A given start is taken as it is.
   /// @throws InputError  IMU and GNSS do not overlap in time  @throws NumericalError  the alignment fails
   PreparedMission(record::ImuRecording imu, record::GnssRecording gnss, Setup setup, const Progress& progress);
   PreparedMission(const PreparedMission&) = delete;
