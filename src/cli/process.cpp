@@ -279,7 +279,7 @@ void ProcessRun::separate_forward_and_backward() {
   result_.separations = std::move(recorder).in_order();
 }
 
-// Values that the run found go into the resolved file, so that it gives the same numbers again.
+// What the run found stands in the resolved file as comments, ready to be stated in another run.
 void ProcessRun::note_estimates() const {
   if (mission_.options().auxiliary.time_offset_sd_s > 0.0)
     config_.root.at("gnss").note_estimated("time_offset_s", fmt::format("{:.17g}", mission_.mission().time_offset_s));

@@ -59,21 +59,13 @@ class Writer {
     const TreeEntry& e = data_.entries[index];
     for (std::size_t i : e.children) {
       const TreeEntry& child = data_.entries[i];
-      const auto replaced = e.estimated.find(child.key);
-      if (replaced != e.estimated.end()) {
-        line(indent, child.key, replaced->second, "estimated, given at " + data_.source_of(i));
-      } else {
-        value(i, indent + yaml_text(child.key) + ":", indent);
-      }
+      value(i, indent + yaml_text(child.key) + ":", indent);
     }
     for (const auto& [key, text] : e.defaults) {
-      if (e.estimated.count(key) == 0 && data_.child(index, key) == nullptr) line(indent, key, text, "default");
+      if (data_.child(index, key) == nullptr) line(indent, key, text, "default");
     }
-    for (const auto& [key, text] : e.estimated) {
-      if (data_.child(index, key) != nullptr) continue;
-      // A key that nobody asks for would be refused when the file is read again.
-      line(e.asked_keys.count(key) != 0 ? indent : indent + "# ", key, text, "estimated");
-    }
+    // Comments: a run that began with what another one found would take another way and end beside it.
+    for (const auto& [key, text] : e.estimated) line(indent + "# ", key, text, "estimated");
   }
 
   void list(std::size_t index, const std::string& indent) {

@@ -377,6 +377,12 @@ TEST(Recordings, CarDriveIsConsistentAndCoasts) {
     EXPECT_LT(sweep[i]["smoothed_horizontal_max_against_gnss"]["median_m"].get<double>(), smoothed_limit[i]) << i;
     EXPECT_LT(sweep[i]["forward_horizontal_max_against_gnss"]["median_m"].get<double>(), forward_limit[i]) << i;
   }
+  // Noise and time offset are fitted: the resolved file asks for the same and finds the same.
+  const Outcome again = run(fmt::format("process '{}' --out '{}'", (folder.path() / "out" / "run.resolved.yaml").string(),
+                                        (folder.path() / "again").string()),
+                            folder.path());
+  ASSERT_EQ(again.status, 0) << again.error;
+  EXPECT_EQ(text_of(folder.path() / "out" / "trajectory.nav"), text_of(folder.path() / "again" / "trajectory.nav"));
 }
 
 }  // namespace

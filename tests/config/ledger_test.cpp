@@ -73,20 +73,21 @@ TEST(Resolved, SaysWhereEachValueCameFrom) {
             "  filtered: false  # /r/run.yaml:6\n"
             "  format: \"a b\"  # default\n"
             "  gps_week_offset: 0.1  # default\n"
-            "start: {time_s: 12.5}  # estimated, given at /r/run.yaml:7\n"
+            "start: auto  # /r/run.yaml:7\n"
             "outages:\n"
             "  - start_s: 10.5  # /r/run.yaml:9\n"
             "empty: null  # /r/run.yaml:10\n"
             "vehicle:\n"
             "  nhc_point_m: [0, -0.5, 1e-09]  # default\n"
-            "  # yaw_deg: 1.25  # estimated\n");
+            "  # yaw_deg: 1.25  # estimated\n"
+            "# start: {time_s: 12.5}  # estimated\n");
 }
 
-TEST(Resolved, EstimateReplacesADefault) {
+TEST(Resolved, EstimateStandsBesideADefault) {
   const Node root;
   (void)root.number("time_offset_s", 0.0);
   root.note_estimated("time_offset_s", "0.0123");
-  EXPECT_EQ(root.resolved_yaml(), "time_offset_s: 0.0123  # estimated\n");
+  EXPECT_EQ(root.resolved_yaml(), "time_offset_s: 0  # default\n# time_offset_s: 0.0123  # estimated\n");
 }
 
 TEST(Resolved, PathFromTheDataFolderStaysPortable) {

@@ -67,8 +67,8 @@ class Node {
   [[nodiscard]] InputError error(std::string_view found, std::string_view expected, std::string_view what_to_do = "") const;
   [[nodiscard]] std::string where() const;  ///< "run.yaml:12: imu.rate_hz"
 
-  /// Records a value (YAML text) that the run estimated or derived under this map, for the resolved file. It replaces
-  /// what was given or defaulted; under a key that nobody asks for it is written as a comment, so that the file reads back.
+  /// Records a value (YAML text) that the run estimated or derived under this map. In the resolved file it is a comment: the
+  /// file says what was found, and gives the same numbers again because it asks for the same things.
   void note_estimated(std::string_view key, std::string_view value) const;
 
   /// Throws for the first key of the whole tree below this node that nobody asked for.
