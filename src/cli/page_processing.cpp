@@ -17,6 +17,8 @@ report::Table settings_table(const ProcessPage& page) {
   table.columns = {{"setting", "", false}, {"value", "", false}};
   const auto add = [&](const std::string& name, const std::string& value) { table.rows.push_back(cells({name, value})); };
   add("smoother", page.config.smooth ? "RTS (backward recursion)" : "none");
+  add("passes of the filter",
+      page.config.passes == 1 ? "1" : fmt::format("{}, carrying states and covariance", page.config.passes));
   add("states",
       fmt::format("{} (9 navigation, {} sensor and auxiliary)", 9 + page.result.states.size(), page.result.states.size()));
   add("lever arm, forward / right / down", triple(page.mission.setup().lever_arm_b, 4) + " m");

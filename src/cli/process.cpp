@@ -67,6 +67,7 @@ class ProcessRun {
   }
 
   void solve_without_outages();
+  void run_earlier_passes();
   void solve_and_write();
   void offer_gnss_noise();
   void study_sweep();
@@ -79,6 +80,8 @@ class ProcessRun {
   [[nodiscard]] static ProcessResult what_was_read(const Recordings& recordings);
   void describe_input();
   [[nodiscard]] std::vector<study::Outage> outages() const;
+  [[nodiscard]] estimate::FilterOptions options_with_outages() const;
+  [[nodiscard]] std::optional<estimate::FilterState> carried(const estimate::FilterOptions& options);
   void count_innovations();
   void note_scores(const std::vector<study::Outage>& gaps, const Scores& forward, const Scores& smoothed);
   void note_estimates() const;
@@ -90,7 +93,8 @@ class ProcessRun {
   std::optional<record::Trajectory> reference_;
   study::Setup setup_;
   study::PreparedMission mission_;
-  study::GapFreeReference gap_free_;  ///< of the delivered solution
+  study::GapFreeReference gap_free_;              ///< of the delivered solution
+  std::optional<estimate::FilterState> carried_;  ///< start that the passes before the last left
   study::Solution solution_;
   TrajectoryCurves curves_;
   KnotStates forward_knots_;
@@ -146,13 +150,28 @@ void ProcessRun::solve_without_outages() {
   if (config_.outages.empty() || reference_) return;
   study::SolutionOutputs outputs;
   (config_.smooth ? outputs.smoothed : outputs.forward) = [this](const auto& epoch) { gap_free_.add(epoch); };
-  static_cast<void>(study::solve(mission_, mission_.options(), config_.smooth, outputs, progress_));
+  static_cast<void>(
+      study::solve(mission_, mission_.options(), config_.smooth, outputs, progress_, carried(mission_.options())));
+}
+
+std::optional<estimate::FilterState> ProcessRun::carried(const estimate::FilterOptions& options) {
+  if (config_.passes == 1) return {};
+  return study::carried_start(mission_, options, config_.passes, progress_);
+}
+
+estimate::FilterOptions ProcessRun::options_with_outages() const {
+  estimate::FilterOptions options = mission_.options();
+  for (const study::Outage& gap : outages()) options.withheld.push_back(gap.span());
+  return options;
+}
+
+// They turn the recordings round for a while, so nothing may run beside them.
+void ProcessRun::run_earlier_passes() {
+  carried_ = carried(options_with_outages());
 }
 
 void ProcessRun::solve_and_write() {
   const std::vector<study::Outage> gaps = outages();
-  estimate::FilterOptions options = mission_.options();
-  for (const study::Outage& gap : gaps) options.withheld.push_back(gap.span());
   const bool keep_gap_free = gaps.empty() && config_.sweep && !reference_;
 
   TrajectoryOutput forward_output(config_.output);
@@ -192,7 +211,7 @@ void ProcessRun::solve_and_write() {
   if (config_.smooth) outputs.smoothed = deliver;
   outputs.at_knots = [this](const estimate::FilterState& state) { forward_knots_.add(state); };
   outputs.states = forward_knots_.sampling();
-  solution_ = study::solve(mission_, options, config_.smooth, outputs, progress_);
+  solution_ = study::solve(mission_, options_with_outages(), config_.smooth, outputs, progress_, carried_);
   for (BackgroundSink* sink : {&write_forward, &draw_forward, &write, &draw}) sink->finish();
   forward_output.close();
   output.close();
@@ -263,7 +282,11 @@ void ProcessRun::study_sweep() {
   const auto progress = [this](double fraction) {
     if (progress_) progress_("studying outages", fraction);
   };
-  result_.sweep = study::run_outages(mission_.mission(), mission_.model(), mission_.options(), solution_.knots, truth, arm,
+  // What an outage of the sweep withholds must not have come in through the start that later passes carry.
+  study::Solution single;
+  if (carried_) single = study::solve(mission_, mission_.options(), true, {}, progress_);
+  const estimate::KnotStore& knots = carried_ ? single.knots : solution_.knots;
+  result_.sweep = study::run_outages(mission_.mission(), mission_.model(), mission_.options(), knots, truth, arm,
                                      study::outages_of(*config_.sweep, result_.start, result_.end), 60.0, progress);
 }
 
@@ -274,8 +297,11 @@ void ProcessRun::check_lever_arm() {
 
 void ProcessRun::separate_forward_and_backward() {
   SeparationRecorder recorder(forward_knots_.knots());
+  // Multi-pass shows the separation of two filters that have both converged.
+  const estimate::FilterState& last = solution_.forward.last;
   mission_.run_backward(
-      solution_.forward.last, [&](const estimate::FilterState& state) { recorder.add(state); }, progress_);
+      options_with_outages(), carried_ ? last : mission_.far_end(last),
+      [&](const estimate::FilterState& state) { recorder.add(state); }, progress_);
   result_.separations = std::move(recorder).in_order();
 }
 
@@ -326,6 +352,7 @@ void process(const std::filesystem::path& run_yaml, const CommonOptions& options
 
   ProcessRun run(config, std::move(recordings), out, progress);
   run.solve_without_outages();
+  run.run_earlier_passes();
   tbb::parallel_invoke([&run] { run.solve_and_write(); }, [&run] { run.check_lever_arm(); });
   run.offer_gnss_noise();
   run.study_sweep();

@@ -1,5 +1,7 @@
 #include "run_config.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 
 #include "coast/geo/units.hpp"
@@ -136,6 +138,16 @@ void read_output(const Node& root, RunConfig& run) {
   run.output.point_b = output->vector3("point_m", Eigen::Vector3d::Zero());
 }
 
+void read_filter(const Node& filter, RunConfig& run) {
+  run.setup.filter.gate_probability = filter.number_within("gate_probability", 1e-6, 0.0, 0.5);
+  run.setup.filter.knot_interval_s = filter.number_within("knot_interval_s", 0.5, 0.01, 10.0);
+  const double passes = filter.number_within("passes", 1.0, 1.0, 9.0);
+  run.passes = static_cast<int>(passes);
+  if (passes != run.passes || run.passes % 2 == 0)
+    throw filter.at("passes").error(fmt::format("{:g} passes", passes),
+                                    "an odd number: forward, or forward, backward, forward, ...");
+}
+
 void read_imu(const Node& imu, RunConfig& run, estimate::NoiseFitChoice& choice) {
   run.imu = io::ImuFileOptions::from(imu);
   run.setup.C_s_b = ins::C_s_b(ins::MountingOptions::from(imu));
@@ -185,10 +197,7 @@ RunConfig read_run_config(const std::filesystem::path& file) {
     run.start = start_from(*start);
   else
     static_cast<void>(root.choice("start", {"auto"}, 0));
-  if (const auto filter = root.find("filter")) {
-    run.setup.filter.gate_probability = filter->number_within("gate_probability", 1e-6, 0.0, 0.5);
-    run.setup.filter.knot_interval_s = filter->number_within("knot_interval_s", 0.5, 0.01, 10.0);
-  }
+  if (const auto filter = root.find("filter")) read_filter(*filter, run);
   read_vehicle(root, run.setup);
   read_outages(root, run);
   const auto smoother = root.find("smoother");

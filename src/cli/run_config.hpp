@@ -49,6 +49,7 @@ struct RunConfig {
   std::optional<GivenStart> start;
   std::vector<OutageSeconds> outages;
   std::optional<study::OutageSweep> sweep;
+  int passes = 1;  ///< odd: forward, then backward and forward again
   bool smooth = true;
   OutputOptions output;
 };

@@ -228,44 +228,71 @@ estimate::NoiseFit PreparedMission::fit(const estimate::NoiseFitChoice& choice, 
       [this](const estimate::ForwardFilter& filter) { return start_state(filter); }, stage(progress, "fitting the noise"));
 }
 
-void PreparedMission::run_backward(const estimate::FilterState& end,
-                                   const std::function<void(const estimate::FilterState&)>& at_knots,
-                                   const Progress& progress) {
+estimate::FilterState PreparedMission::far_end(const estimate::FilterState& last) const {
+  const estimate::ForwardFilter filter(*mission_, setup_.model, setup_.filter);
+  estimate::FilterState state =
+      filter.initial_state(last.nav, start_.sd_position_n, start_.sd_velocity_n, start_.sd_attitude_n);
+  state.x = last.x;
+  return state;
+}
+
+estimate::FilterState PreparedMission::run_backward(const estimate::FilterOptions& options, const estimate::FilterState& from,
+                                                    const std::function<void(const estimate::FilterState&)>& at_knots,
+                                                    const Progress& progress) {
   const geo::GpsTime mirror = imu_.samples.back().t;
   ins::reverse(imu_, mirror, mission_->increments);
   ins::reverse(gnss_, mirror);
-  {
+  const auto filter_back = [&] {
     const ReversedRun reversed(*mission_, imu_, gnss_, mirror, ReversedRun::AlreadyReversed{});
-    const estimate::ForwardFilter filter(reversed.mission(), setup_.model, setup_.filter);
-    estimate::FilterState start =
-        filter.initial_state(end.nav, start_.sd_position_n, start_.sd_velocity_n, start_.sd_attitude_n);
-    start.x = end.x;
+    const estimate::ForwardFilter filter(reversed.mission(), setup_.model, reversed.mirrored(options));
     estimate::FilterOutputs outputs;
-    outputs.at_knots = [&](const estimate::FilterState& state) { at_knots(reversed.mirrored(state, filter.layout())); };
+    if (at_knots)
+      outputs.at_knots = [&](const estimate::FilterState& state) { at_knots(reversed.mirrored(state, filter.layout())); };
     outputs.progress = stage(progress, "filtering backward");
-    static_cast<void>(filter.run(reversed.mirrored(start, filter.layout()), outputs));
-  }
+    const geo::GpsTime end = ins::mirrored(start_.nav.t, mirror);
+    return reversed.mirrored(filter.run_until(reversed.mirrored(from, filter.layout()), end, outputs).last, filter.layout());
+  };
+  estimate::FilterState at_start = filter_back();
   ins::reverse(imu_, mirror, mission_->increments);
   ins::reverse(gnss_, mirror);
+  return at_start;
 }
 
 Solution solve(const PreparedMission& mission, const estimate::FilterOptions& options, bool smooth,
-               const SolutionOutputs& outputs, const Progress& progress) {
+               const SolutionOutputs& outputs, const Progress& progress, const std::optional<estimate::FilterState>& carried) {
   Solution solution;
   solution.filter = std::make_unique<estimate::ForwardFilter>(mission.mission(), mission.model(), options);
+  const estimate::FilterState start = mission.start_state(*solution.filter);
   estimate::FilterOutputs filter_outputs;
   filter_outputs.epochs = outputs.forward;
   filter_outputs.at_knots = outputs.at_knots;
   filter_outputs.progress = stage(progress, "filtering forward");
-  if (smooth) filter_outputs.knots = &solution.knots;
-  solution.forward = solution.filter->run(mission.start_state(*solution.filter), filter_outputs);
+  if (smooth && !carried) filter_outputs.knots = &solution.knots;
+  solution.forward = solution.filter->run(carried.value_or(start), filter_outputs);
   if (!smooth) return solution;
+  if (carried) {
+    estimate::FilterOutputs knots_alone;
+    knots_alone.knots = &solution.knots;
+    knots_alone.progress = stage(progress, "filtering forward for the smoother");
+    static_cast<void>(solution.filter->run({carried->nav, carried->x, start.P}, knots_alone));
+  }
   solution.smoothed =
       estimate::smooth(solution.knots, solution.filter->layout(), stage(progress, "smoothing backward"), outputs.states);
   if (outputs.smoothed)
     estimate::emit_smoothed(mission.mission(), solution.filter->layout(), solution.knots, solution.smoothed, outputs.smoothed,
                             stage(progress, "writing the smoothed trajectory"));
   return solution;
+}
+
+estimate::FilterState carried_start(PreparedMission& mission, const estimate::FilterOptions& options, int passes,
+                                    const Progress& progress) {
+  const estimate::ForwardFilter filter(mission.mission(), mission.model(), options);
+  estimate::FilterState state = mission.start_state(filter);
+  estimate::FilterOutputs outputs;
+  outputs.progress = stage(progress, "filtering forward");
+  for (int done = 1; done < passes; done += 2)
+    state = mission.run_backward(options, filter.run(state, outputs).last, {}, progress);
+  return state;
 }
 
 LeverArmCheck check_lever_arm(const PreparedMission& mission, double prior_sd_m, const Progress& progress) {

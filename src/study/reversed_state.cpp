@@ -27,4 +27,12 @@ estimate::FilterState ReversedRun::mirrored(const estimate::FilterState& state, 
   return result;
 }
 
+// A span has its beginning and not its end; mirrored it would have it the other way round.
+estimate::FilterOptions ReversedRun::mirrored(estimate::FilterOptions options) const {
+  constexpr double kNext = 1e-9;  // s, the resolution of GpsTime
+  for (estimate::TimeSpan& span : options.withheld)
+    span = {ins::mirrored(span.to, mirror_) + kNext, ins::mirrored(span.from, mirror_) + kNext};
+  return options;
+}
+
 }  // namespace coast::study

@@ -23,6 +23,9 @@ class ReversedRun {
   /// Into reversed time and back (its own inverse): velocity, additive gyro errors and time offset change sign.
   [[nodiscard]] estimate::FilterState mirrored(const estimate::FilterState& state, const estimate::StateLayout& layout) const;
 
+  /// The same fixes withheld.
+  [[nodiscard]] estimate::FilterOptions mirrored(estimate::FilterOptions options) const;
+
  private:
   geo::GpsTime mirror_;
   estimate::Mission mission_;

@@ -137,6 +137,33 @@ TEST(Commands, ProcessesWhatSimulateWroteAndRepeatsItFromTheResolvedFile) {
   EXPECT_GT(fs::file_size(out / "report.html"), 100000U);
 }
 
+TEST(Commands, ThreePassesRepeatFromTheResolvedFileAndKeepTheSweepBlind) {
+  const test::TemporaryDirectory folder;
+  std::string text = text_of(recording() / "run.yaml");
+  const auto outages = text.find("outages:");  // the last key, a list
+  ASSERT_NE(outages, std::string::npos);
+  text.replace(outages, std::string::npos, "outages: {every_s: 60, first_s: 120, durations_s: [20]}\n");
+  write(recording() / "sweep1.yaml", text);
+  write(recording() / "sweep3.yaml", text + "filter: {passes: 3}\n");
+  for (const char* name : {"sweep1", "sweep3"}) {
+    const Outcome outcome =
+        run(fmt::format("process '{}.yaml' --out '{}'", (recording() / name).string(), (folder.path() / name).string()),
+            folder.path());
+    ASSERT_EQ(outcome.status, 0) << outcome.error;
+  }
+  const auto summary = [&](const char* name) { return nlohmann::json::parse(text_of(folder.path() / name / "summary.json")); };
+  // Scored against the simulated truth, so the sweeps are one and the same.
+  EXPECT_EQ(summary("sweep1").at("outage_sweep"), summary("sweep3").at("outage_sweep"));
+  EXPECT_NE(text_of(folder.path() / "sweep1" / "forward.nav"), text_of(folder.path() / "sweep3" / "forward.nav"));
+  const fs::path again = folder.path() / "again";
+  ASSERT_EQ(
+      run(fmt::format("process '{}' --out '{}'", (folder.path() / "sweep3" / "run.resolved.yaml").string(), again.string()),
+          folder.path())
+          .status,
+      0);
+  EXPECT_EQ(text_of(folder.path() / "sweep3" / "trajectory.nav"), text_of(again / "trajectory.nav"));
+}
+
 struct Spoiled {
   const char* what;
   const char* from;  ///< replaced in a good run.yaml
@@ -172,6 +199,7 @@ INSTANTIATE_TEST_SUITE_P(
                     Spoiled{"two of three numbers", "mounting_deg: [0, 0, 0]", "mounting_deg: [0, 0]", "mounting_deg"},
                     Spoiled{"left-handed axes", "axes: [x, y, z]", "axes: [x, y, -z]", "axes"},
                     Spoiled{"batch", "reference:", "smoother: batch\nreference:", "batch"},
+                    Spoiled{"a forward pass too few", "reference:", "filter: {passes: 2}\nreference:", "passes"},
                     Spoiled{"a vehicle that does not exist", "reference:", "vehicle: tram\nreference:", "tram"},
                     Spoiled{"an outage without end", "duration_s: 20", "duration_s: 0", "duration_s"},
                     Spoiled{"a start without its time",

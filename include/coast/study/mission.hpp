@@ -56,10 +56,15 @@ class PreparedMission {
   [[nodiscard]] estimate::NoiseFit fit(const estimate::NoiseFitChoice& choice, const estimate::NoiseAdjustment& from,
                                        double longest_s, const Progress& progress) const;
 
-  /// Filters backward from the far end, started from `end` with the start's uncertainty; delivers states in forward time
-  /// (from last to first) before each knot's updates. The recordings are reversed in place meanwhile.
-  void run_backward(const estimate::FilterState& end, const std::function<void(const estimate::FilterState&)>& at_knots,
-                    const Progress& progress);
+  /// What a backward pass begins with that is to know nothing of the forward one but where it ended: its states, with the
+  /// uncertainty of the start.
+  [[nodiscard]] estimate::FilterState far_end(const estimate::FilterState& last) const;
+  /// Filters backward from `from` at the far end to the epoch of the start; delivers states in forward time (from last to
+  /// first) before each knot's updates. The recordings are reversed in place meanwhile.
+  /// @return the state at the start's epoch, its updates done
+  estimate::FilterState run_backward(const estimate::FilterOptions& options, const estimate::FilterState& from,
+                                     const std::function<void(const estimate::FilterState&)>& at_knots,
+                                     const Progress& progress);
 
  private:
   void find_standstill();
@@ -92,8 +97,21 @@ struct SolutionOutputs {
   std::function<void(const estimate::FilterState&)> at_knots;
   estimate::KnotSampling states;  ///< smoothed knots that keep their sensor states
 };
+/// @param carried  start that earlier passes left, with their covariance (carried_start). The forward solution begins with it;
+///                 the smoothed one takes its states alone and the uncertainty of the alignment, so that no fix counts twice in
+///                 its sigmas: it costs another forward pass.
 [[nodiscard]] Solution solve(const PreparedMission& mission, const estimate::FilterOptions& options, bool smooth,
-                             const SolutionOutputs& outputs, const Progress& progress);
+                             const SolutionOutputs& outputs, const Progress& progress,
+                             const std::optional<estimate::FilterState>& carried = {});
+
+/// Multi-pass: forward, backward, ... over the whole mission, each pass beginning with the states and the covariance that the
+/// one before ended with, until one arrives at the start again.
+///
+/// What it gives: a forward filter that has converged when the mission begins, and a linearisation about a start that the whole
+/// mission knows. What it costs: the covariance carried counts every fix once for each pass.
+/// @param passes  odd, 3 or more; the last, forward one is left to solve()
+[[nodiscard]] estimate::FilterState carried_start(PreparedMission& mission, const estimate::FilterOptions& options, int passes,
+                                                  const Progress& progress);
 
 /// Lever arm found by the data when it is left free around the configured one.
 struct LeverArmCheck {
