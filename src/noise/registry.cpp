@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <stdexcept>
 
 #include "coast/noise/process.hpp"
 #include "processes/processes.hpp"
@@ -10,6 +11,13 @@ const std::vector<Registration>& registry() {
       white_noise(), random_constant(), random_walk(), gauss_markov(), scale_factor(), misalignment(),
   };
   return table;
+}
+
+const Estimable& estimable(std::string_view name) {
+  const auto found = std::ranges::find(registry(), name, &Registration::name);
+  if (found == registry().end() || found->estimable == nullptr)
+    throw std::invalid_argument("no process '" + std::string(name) + "' that can be estimated");
+  return *found->estimable;
 }
 
 std::vector<ProcessPtr> make_processes(const config::Node& entry, const EntryContext& context) {

@@ -9,6 +9,7 @@
 #include <span>
 #include <vector>
 
+#include "coast/noise/interval.hpp"
 #include "coast/noise/process.hpp"
 
 namespace coast::noise {
@@ -20,11 +21,6 @@ enum class NoiseType {
   kFlicker,       ///< f^-1: bias instability, sigma constant
   kRandomWalk,    ///< f^-2: rate random walk, sigma ~ tau^1/2
   kRamp,          ///< steeper, or a deterministic ramp: sigma ~ tau
-};
-
-struct Interval {
-  double lower = 0.0;
-  double upper = 0.0;
 };
 
 /// An estimated deviation.

@@ -58,6 +58,8 @@ struct EntryContext {
   double rate_hz;  ///< of the model file: `variance_per_sample` refers to it; 0 where the file does not say
 };
 
+class Estimable;
+
 /// One line of the registry: a name, help for people, and how an entry becomes processes.
 struct Registration {
   std::string_view name;
@@ -65,10 +67,13 @@ struct Registration {
   std::string_view gyro_example;  ///< a valid entry for a gyro axis
   std::string_view accel_example;
   std::vector<ProcessPtr> (*make)(const config::Node& entry, const EntryContext& context);
+  const Estimable* estimable = nullptr;  ///< how it is found in a static record; nothing where it is not
 };
 
 /// Every process that exists, in the order of the manual.
 [[nodiscard]] const std::vector<Registration>& registry();
+/// How a process of this name is estimated. @throws std::invalid_argument  there is none
+[[nodiscard]] const Estimable& estimable(std::string_view name);
 /// @throws InputError  unknown process (names the nearest), missing or negative value, wrong unit: with file and line
 [[nodiscard]] std::vector<ProcessPtr> make_processes(const config::Node& entry, const EntryContext& context);
 

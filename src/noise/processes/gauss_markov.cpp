@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "entry.hpp"
+#include "processes/estimables.hpp"
 #include "processes/processes.hpp"
 #include "scalar_process.hpp"
 
@@ -119,7 +120,97 @@ std::vector<ProcessPtr> make_gauss_markov(const config::Node& entry, const Entry
   return {std::make_shared<FirstOrderGaussMarkov>(parameters, form, context.rate_hz)};
 }
 
+/// The zero of `slope` in (low, high), positive at low, negative at high.
+template <class Slope>
+double zero_of(const Slope& slope, double low, double high) {
+  for (int i = 0; i < 200 && high - low > 1e-15 * std::abs(high); ++i) {
+    const double middle = 0.5 * (low + high);
+    (slope(middle) > 0.0 ? low : high) = middle;
+  }
+  return 0.5 * (low + high);
+}
+
+/// u = log beta [1/s], log sigma^2 [signal]^2, discretised exactly, starting stationary.
+class EstimableGaussMarkov final : public Estimable {
+ public:
+  [[nodiscard]] std::string_view name() const override { return "gauss_markov"; }
+  [[nodiscard]] std::string_view symbol() const override { return "GM"; }
+  [[nodiscard]] std::vector<ParameterInfo> parameters() const override {
+    return {{"beta", "1/s", ParameterInfo::Kind::kRate}, {"sigma2", "signal^2"}};
+  }
+  [[nodiscard]] Eigen::Index states() const override { return 1; }
+  /// A correlation time of ten records is a random walk in all that can be seen; one of a third of an interval is white.
+  [[nodiscard]] std::vector<Interval> ranges(const SignalScale& scale) const override {
+    return {{-std::log(10.0 * scale.duration), std::log(3.0 / scale.interval)}, log_variance_range(scale.variance)};
+  }
+  [[nodiscard]] SampleBlock block(std::span<const double> u, double interval) const override {
+    const double step = std::exp(u[0]) * interval;
+    const double sigma2 = std::exp(u[1]);
+    SampleBlock block = SampleBlock::zero(1);
+    block.Phi(0, 0) = std::exp(-step);
+    block.Q(0, 0) = -sigma2 * std::expm1(-2.0 * step);
+    block.P1(0, 0) = sigma2;
+    block.h(0) = 1.0;
+    return block;
+  }
+  [[nodiscard]] std::vector<SampleBlock> derivatives(std::span<const double> u, double interval) const override {
+    const SampleBlock at = block(u, interval);
+    const double step = std::exp(u[0]) * interval;
+    SampleBlock by_beta = SampleBlock::zero(1);
+    by_beta.Phi = -step * at.Phi;
+    by_beta.Q(0, 0) = 2.0 * step * std::exp(u[1] - 2.0 * step);
+    return {by_beta, variances_of(at)};
+  }
+  void maximise(const BlockMoments& m, double interval, const std::vector<bool>& fixed, std::span<double> u) const override;
+  [[nodiscard]] ProcessPtr process(std::span<const double> u, Sensor sensor) const override {
+    return noise::make_gauss_markov(
+        {.name = "gauss_markov", .sigma = std::exp(0.5 * u[1]), .beta = std::exp(u[0]), .unit = si_unit(kSignal.of(sensor))});
+  }
+};
+
+/// Maximises, with d = 1 - phi and the stationary start,
+///
+///     -1/2 { (R + T) log sigma2 + T log(1 - phi^2) + s0/sigma2 + M(phi)/(sigma2 (1 - phi^2)) },
+///     M = C - 2 phi B + phi^2 A = (C - 2 B + A) + 2 d (B - A) + d^2 A
+///
+/// over R records with T transitions. The slope in phi is a cubic with one sign change in (0, 1), whether sigma2 is free
+/// (concentrated out) or fixed. In d no digits are lost where phi is close to 1.
+void EstimableGaussMarkov::maximise(const BlockMoments& m, double interval, const std::vector<bool>& fixed,
+                                    std::span<double> u) const {
+  const double A = m.before(0, 0);
+  const double B = m.lagged(0, 0);
+  const double C = m.after(0, 0);
+  const double steps = C - 2.0 * B + A;
+  const double T = m.transitions;
+  const double R = m.records;
+  const double s0 = m.first(0, 0);
+  const auto M = [&](double d) { return steps + 2.0 * d * (B - A) + d * d * A; };
+  const auto D = [](double d) { return d * (2.0 - d); };  // 1 - phi^2
+  const auto free_slope = [&](double d) {
+    const double phi = 1.0 - d;
+    return (R + T) * ((A - s0) * phi - B) * D(d) + R * phi * (s0 * D(d) + M(d));
+  };
+  const auto fixed_slope = [&](double d) {
+    const double phi = 1.0 - d;
+    return -2.0 * T * phi * D(d) * std::exp(u[1]) + 2.0 * (phi * A - B) * D(d) + 2.0 * phi * M(d);
+  };
+  constexpr double kShortest = 1e-15;
+  constexpr double kLongest = 1.0 - 1e-6;
+  if (!fixed[0]) {
+    const double d = fixed[1] ? zero_of(fixed_slope, kShortest, kLongest) : zero_of(free_slope, kShortest, kLongest);
+    u[0] = std::log(-std::log1p(-d) / interval);
+  }
+  if (fixed[1]) return;
+  const double d = -std::expm1(-std::exp(u[0]) * interval);
+  u[1] = std::log((s0 + M(d) / D(d)) / (R + T));
+}
+
 }  // namespace
+
+const Estimable& estimable_gauss_markov() {
+  static const EstimableGaussMarkov process;
+  return process;
+}
 
 ProcessPtr make_gauss_markov(const GaussMarkovParameters& parameters) {
   return std::make_shared<GaussMarkov>(parameters);
@@ -137,7 +228,9 @@ Registration gauss_markov() {
           "first-order Gauss-Markov process: `sigma` is the stationary standard deviation, `correlation_time_s` = 1/beta; "
           "`first_order: table1 | section2e` for the paper's approximate discretisations",
           "{process: gauss_markov, sigma: 0.1, unit: deg/h, correlation_time_s: 1000}",
-          "{process: gauss_markov, sigma: 2e-4, unit: m/s^2, correlation_time_s: 2500}", make_gauss_markov};
+          "{process: gauss_markov, sigma: 2e-4, unit: m/s^2, correlation_time_s: 2500}",
+          make_gauss_markov,
+          &estimable_gauss_markov()};
 }
 
 }  // namespace coast::noise

@@ -1,6 +1,7 @@
 #pragma once
 // The registrations that src/noise/registry.cpp lists; each is defined in the process's own file.
 
+#include "coast/noise/estimable.hpp"
 #include "coast/noise/gauss_markov.hpp"
 #include "coast/noise/process.hpp"
 
@@ -15,6 +16,10 @@ Registration misalignment();
 
 /// White noise of the given density, [signal]/sqrt(Hz).
 [[nodiscard]] ProcessPtr make_white_noise(double density, Sensor sensor);
+/// How they are estimated; each is one object that lives as long as the program.
+[[nodiscard]] const Estimable& estimable_white_noise();
+[[nodiscard]] const Estimable& estimable_random_walk();
+[[nodiscard]] const Estimable& estimable_gauss_markov();
 /// beta of an entry's `correlation_time_s`, 0 where the key is absent.
 [[nodiscard]] double beta_of(const config::Node& entry);
 

@@ -1,6 +1,9 @@
 #include <fmt/format.h>
 
+#include <cmath>
+
 #include "entry.hpp"
+#include "processes/estimables.hpp"
 #include "processes/processes.hpp"
 #include "scalar_process.hpp"
 
@@ -30,15 +33,53 @@ class RandomWalk final : public ScalarProcess {
   std::string_view unit_;
 };
 
+/// u = log of the squared density, [signal]^2/s. It starts at zero: the level is part of the mean.
+class EstimableRandomWalk final : public Estimable {
+ public:
+  [[nodiscard]] std::string_view name() const override { return "random_walk"; }
+  [[nodiscard]] std::string_view symbol() const override { return "RW"; }
+  [[nodiscard]] std::vector<ParameterInfo> parameters() const override { return {{"density2", "signal^2/s"}}; }
+  [[nodiscard]] Eigen::Index states() const override { return 1; }
+  [[nodiscard]] std::vector<Interval> ranges(const SignalScale& scale) const override {
+    return {log_variance_range(scale.variance / scale.duration)};
+  }
+  [[nodiscard]] SampleBlock block(std::span<const double> u, double interval) const override {
+    SampleBlock block = SampleBlock::zero(1);
+    block.Phi(0, 0) = 1.0;
+    block.Q(0, 0) = std::exp(u[0]) * interval;
+    block.h(0) = 1.0;
+    return block;
+  }
+  [[nodiscard]] std::vector<SampleBlock> derivatives(std::span<const double> u, double interval) const override {
+    return {variances_of(block(u, interval))};
+  }
+  void maximise(const BlockMoments& m, double interval, const std::vector<bool>& fixed, std::span<double> u) const override {
+    if (fixed[0]) return;
+    const double steps = m.after(0, 0) - 2.0 * m.lagged(0, 0) + m.before(0, 0);
+    u[0] = std::log(steps / (m.transitions * interval));
+  }
+  [[nodiscard]] ProcessPtr process(std::span<const double> u, Sensor sensor) const override {
+    return std::make_shared<RandomWalk>(std::exp(0.5 * u[0]), si_unit(kSignalWalk.of(sensor)));
+  }
+};
+
 }  // namespace
 
+const Estimable& estimable_random_walk() {
+  static const EstimableRandomWalk process;
+  return process;
+}
+
 Registration random_walk() {
-  return {"random_walk", "integrated white noise that starts at zero: `density` per square root of time",
-          "{process: random_walk, density: 2, unit: deg/h/sqrt(h)}", "{process: random_walk, density: 1, unit: ug/sqrt(s)}",
+  return {"random_walk",
+          "integrated white noise that starts at zero: `density` per square root of time",
+          "{process: random_walk, density: 2, unit: deg/h/sqrt(h)}",
+          "{process: random_walk, density: 1, unit: ug/sqrt(s)}",
           [](const config::Node& entry, const EntryContext& context) -> std::vector<ProcessPtr> {
             return {std::make_shared<RandomWalk>(value_with_unit(entry, "density", kSignalWalk, context),
                                                  si_unit(kSignalWalk.of(context.sensor)))};
-          }};
+          },
+          &estimable_random_walk()};
 }
 
 }  // namespace coast::noise

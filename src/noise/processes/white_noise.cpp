@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "entry.hpp"
+#include "processes/estimables.hpp"
 #include "processes/processes.hpp"
 
 namespace coast::noise {
@@ -41,7 +42,39 @@ std::vector<ProcessPtr> make_white_noise(const config::Node& entry, const EntryC
   return {make_white_noise(std::sqrt(geo::density_of_samples(variance, context.rate_hz).value), context.sensor)};
 }
 
+/// u = log of the density [signal]^2/Hz.
+class EstimableWhiteNoise final : public Estimable {
+ public:
+  [[nodiscard]] std::string_view name() const override { return "white_noise"; }
+  [[nodiscard]] std::string_view symbol() const override { return "WN"; }
+  [[nodiscard]] std::vector<ParameterInfo> parameters() const override { return {{"density", "signal^2/Hz"}}; }
+  [[nodiscard]] Eigen::Index states() const override { return 0; }
+  [[nodiscard]] std::vector<Interval> ranges(const SignalScale& scale) const override {
+    return {log_variance_range(scale.variance * scale.interval)};
+  }
+  [[nodiscard]] SampleBlock block(std::span<const double> u, double interval) const override {
+    SampleBlock block = SampleBlock::zero(0);
+    block.white = std::exp(u[0]) / interval;
+    return block;
+  }
+  [[nodiscard]] std::vector<SampleBlock> derivatives(std::span<const double> u, double interval) const override {
+    return {block(u, interval)};
+  }
+  void maximise(const BlockMoments& moments, double interval, const std::vector<bool>& fixed,
+                std::span<double> u) const override {
+    if (!fixed[0]) u[0] = std::log(moments.residual / moments.samples * interval);
+  }
+  [[nodiscard]] ProcessPtr process(std::span<const double> u, Sensor sensor) const override {
+    return make_white_noise(std::exp(0.5 * u[0]), sensor);
+  }
+};
+
 }  // namespace
+
+const Estimable& estimable_white_noise() {
+  static const EstimableWhiteNoise process;
+  return process;
+}
 
 ProcessPtr make_white_noise(double density, Sensor sensor) {
   return std::make_shared<WhiteNoise>(geo::Psd{density * density}, si_unit(kSignalNoise.of(sensor)));
@@ -50,8 +83,10 @@ ProcessPtr make_white_noise(double density, Sensor sensor) {
 Registration white_noise() {
   return {"white_noise",
           "white noise of the signal: `density` (per square root of Hz), or `variance_per_sample` at the model's rate_hz",
-          "{process: white_noise, density: 0.15, unit: deg/sqrt(h)}", "{process: white_noise, density: 50, unit: ug/sqrt(Hz)}",
-          make_white_noise};
+          "{process: white_noise, density: 0.15, unit: deg/sqrt(h)}",
+          "{process: white_noise, density: 50, unit: ug/sqrt(Hz)}",
+          make_white_noise,
+          &estimable_white_noise()};
 }
 
 }  // namespace coast::noise

@@ -1,0 +1,79 @@
+#pragma once
+// A sum of processes as matrices of a size known at compile time: what the passes over a record run on. Private to the room.
+
+#include <Eigen/Core>
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+#include <type_traits>
+
+#include "coast/noise/estimable.hpp"
+
+namespace coast::noise {
+
+template <int N>
+struct FixedModel {
+  using Matrix = Eigen::Matrix<double, N, N>;
+  using Vector = Eigen::Matrix<double, N, 1>;
+  using Row = Eigen::Matrix<double, 1, N>;
+
+  /// States beyond those of the block are there and always zero.
+  explicit FixedModel(const SampleBlock& block) : white(block.white) {
+    const Eigen::Index n = block.h.size();
+    Phi.topLeftCorner(n, n) = block.Phi;
+    Q.topLeftCorner(n, n) = block.Q;
+    P1.topLeftCorner(n, n) = block.P1;
+    h.head(n) = block.h;
+  }
+
+  Matrix Phi = Matrix::Zero();
+  Matrix Q = Matrix::Zero();
+  Matrix P1 = Matrix::Zero();
+  Row h = Row::Zero();
+  double white = 0.0;
+};
+
+inline constexpr int kMostStates = 12;
+inline constexpr int kMostParameters = 16;
+
+/// Calls `pass` with the smallest size that has room for `states`.
+template <class Pass>
+decltype(auto) with_size(Eigen::Index states, const Pass& pass) {
+  if (states <= 2) return pass(std::integral_constant<int, 2>{});
+  if (states <= 3) return pass(std::integral_constant<int, 3>{});
+  if (states <= 4) return pass(std::integral_constant<int, 4>{});
+  if (states <= 6) return pass(std::integral_constant<int, 6>{});
+  if (states <= kMostStates) return pass(std::integral_constant<int, kMostStates>{});
+  throw std::invalid_argument("a sum of processes with more than 12 states");
+}
+
+/// Tells when a recursion of covariances has come to rest: states whose innovation variance no longer changes share their gain.
+template <int N>
+class SteadyState {
+ public:
+  using Matrix = typename FixedModel<N>::Matrix;
+  static constexpr int kStride = 64;  ///< steps between looks
+
+  /// Relative change since the last look, element by element against the diagonal; from two of them, what is still to come.
+  [[nodiscard]] bool reached(const Matrix& P) {
+    double change = 0.0;
+    for (int i = 0; i < N; ++i)
+      for (int j = 0; j <= i; ++j) {
+        const double scale = P(i, i) * P(j, j);
+        if (scale > 0.0) change = std::max(change, std::abs(P(i, j) - last_(i, j)) / std::sqrt(scale));
+      }
+    const double rate = change_ > 0.0 ? change / change_ : 1.0;
+    last_ = P;
+    change_ = change;
+    return change < kRounding || (rate < 1.0 && change < kSmall && change * rate / (1.0 - rate) < kLeft);
+  }
+
+ private:
+  static constexpr double kRounding = 4e-15;
+  static constexpr double kSmall = 1e-11;
+  static constexpr double kLeft = 1e-13;
+  Matrix last_ = Matrix::Zero();
+  double change_ = 0.0;
+};
+
+}  // namespace coast::noise

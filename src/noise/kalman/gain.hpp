@@ -1,0 +1,54 @@
+#pragma once
+// The covariance side of the filter, step by step until it rests. Private to the room.
+
+#include "fixed_model.hpp"
+
+namespace coast::noise {
+
+template <int N>
+class Gain {
+ public:
+  using Model = FixedModel<N>;
+  explicit Gain(const Model& model) : P(model.P1), model_(model) { measure(); }
+
+  /// Prediction across one missing sample.
+  void skip() {
+    predict(P);
+    measure();
+    steady_ = false;
+    since_look_ = 0;
+  }
+  /// Update with a sample and prediction to the next one.
+  void step() {
+    if (steady_) return;
+    predict(P - S * k * k.transpose());
+    measure();
+    if (++since_look_ < SteadyState<N>::kStride) return;
+    since_look_ = 0;
+    steady_ = rest_.reached(P);
+  }
+  [[nodiscard]] bool steady() const { return steady_; }
+  [[nodiscard]] bool positive() const { return S > 0.0 && std::isfinite(S); }
+
+  typename Model::Matrix P;  ///< predicted
+  double S = 0.0;            ///< variance of the innovation
+  typename Model::Vector k;  ///< P h'/S
+
+ private:
+  void predict(const typename Model::Matrix& updated) {
+    P.noalias() = model_.Phi * updated * model_.Phi.transpose() + model_.Q;
+    P = (0.5 * (P + P.transpose())).eval();
+  }
+  void measure() {
+    k.noalias() = P * model_.h.transpose();
+    S = model_.h.dot(k) + model_.white;
+    k /= S;
+  }
+
+  const Model& model_;
+  SteadyState<N> rest_;
+  int since_look_ = 0;
+  bool steady_ = false;
+};
+
+}  // namespace coast::noise

@@ -1,0 +1,102 @@
+#include <cmath>
+
+#include "gain.hpp"
+#include "passes.hpp"
+
+namespace coast::noise {
+
+namespace {
+
+template <int N>
+class InnovationPass {
+ public:
+  explicit InnovationPass(const SampleBlock& block) : model_(block), gain_(model_) {}
+
+  InnovationSums run(const StaticSignal& signal) {
+    const GridTime time(signal);
+    std::uint64_t at = 0;
+    for (const StaticSignal::Run& run : signal.runs) {
+      for (; at < run.start && sums_.positive; ++at) skip();
+      std::size_t i = 0;
+      for (; i < run.count && !gain_.steady() && sums_.positive; ++i)
+        step({signal.values[run.first + i], 1.0, time.at(at + i)});
+      if (sums_.positive) rest_of_run({signal.values.data() + run.first + i, run.count - i}, time.at(at + i), time.step());
+      at += run.count;
+    }
+    return sums_;
+  }
+
+ private:
+  using Columns = Eigen::Matrix<double, N, 3>;
+
+  void skip() {
+    states_ = (model_.Phi * states_).eval();
+    gain_.skip();
+  }
+  void step(const Eigen::RowVector3d& z) {
+    sums_.positive = gain_.positive();
+    const Eigen::RowVector3d e = z - model_.h * states_;
+    sums_.products.noalias() += e.transpose() * e / gain_.S;
+    sums_.log_determinant += std::log(gain_.S);
+    states_ = (model_.Phi * (states_ + gain_.k * e)).eval();
+    gain_.step();
+  }
+  /// The gain rests: a <- A a + b z with constant A = Phi (I - k h), b = Phi k.
+  void rest_of_run(std::span<const double> values, double tau, double tau_step) {
+    const typename FixedModel<N>::Matrix A = model_.Phi * (FixedModel<N>::Matrix::Identity() - gain_.k * model_.h);
+    const typename FixedModel<N>::Vector b = model_.Phi * gain_.k;
+    const typename FixedModel<N>::Row h = model_.h;
+    Columns a = states_;
+    Eigen::Matrix3d products = Eigen::Matrix3d::Zero();
+    for (std::size_t i = 0; i < values.size(); ++i) {
+      const Eigen::RowVector3d z(values[i], 1.0, tau + static_cast<double>(i) * tau_step);
+      const Eigen::RowVector3d e = z - h * a;
+      products.noalias() += e.transpose() * e;
+      a = (A * a + b * z).eval();
+    }
+    states_ = a;
+    sums_.products += products / gain_.S;
+    sums_.log_determinant += static_cast<double>(values.size()) * std::log(gain_.S);
+  }
+
+  FixedModel<N> model_;
+  Gain<N> gain_;
+  Columns states_ = Columns::Zero();
+  InnovationSums sums_;
+};
+
+template <int N>
+std::vector<double> whiten(const SampleBlock& block, const StaticSignal& signal, const MeanCurve& mean) {
+  const FixedModel<N> model(block);
+  Gain<N> gain(model);
+  typename FixedModel<N>::Vector a = FixedModel<N>::Vector::Zero();
+  const GridTime time(signal);
+  std::vector<double> white;
+  white.reserve(signal.values.size());
+  std::uint64_t at = 0;
+  for (const StaticSignal::Run& run : signal.runs) {
+    for (; at < run.start; ++at) {
+      a = (model.Phi * a).eval();
+      gain.skip();
+    }
+    for (std::size_t i = 0; i < run.count; ++i, ++at) {
+      const double e = signal.values[run.first + i] - mean.level - mean.drift * time.at(at) - model.h.dot(a);
+      white.push_back(e / std::sqrt(gain.S));
+      a = (model.Phi * (a + gain.k * e)).eval();
+      gain.step();
+    }
+  }
+  return white;
+}
+
+}  // namespace
+
+InnovationSums innovation_pass(const SampleBlock& block, const StaticSignal& signal) {
+  return with_size(block.h.size(), [&](auto size) { return InnovationPass<size()>(block).run(signal); });
+}
+
+std::vector<double> whitening_pass(const SampleBlock& block, const StaticSignal& signal, const MeanCurve& mean) {
+  return with_size(block.h.size(), [&](auto size) { return whiten<size()>(block, signal, mean); });
+}
+
+}  // namespace coast::noise

@@ -1,0 +1,66 @@
+#pragma once
+// Passes of the Kalman filter and smoother over one record. Private to the room.
+
+#include <vector>
+
+#include "coast/noise/estimable.hpp"
+#include "coast/noise/static_signal.hpp"
+
+namespace coast::noise {
+
+/// y - level - drift tau, tau from -1 to 1 over the grid of the record.
+struct MeanCurve {
+  double level = 0.0;
+  double drift = 0.0;
+};
+/// tau of a grid index.
+class GridTime {
+ public:
+  explicit GridTime(const StaticSignal& signal)
+      : middle_(0.5 * static_cast<double>(signal.length() - 1)), half_(std::max(middle_, 0.5)) {}
+  [[nodiscard]] double at(std::uint64_t index) const { return (static_cast<double>(index) - middle_) / half_; }
+  [[nodiscard]] double step() const { return 1.0 / half_; }
+
+ private:
+  double middle_;
+  double half_;
+};
+
+/// Innovations of three columns at once: the signal, 1 and tau. Linear in the signal, so that of any level and drift follows.
+struct InnovationSums {
+  Eigen::Matrix3d products = Eigen::Matrix3d::Zero();  ///< sum e_i e_j / S
+  double log_determinant = 0.0;                        ///< sum log S
+  bool positive = true;                                ///< false: an innovation variance was not
+};
+[[nodiscard]] InnovationSums innovation_pass(const SampleBlock& block, const StaticSignal& signal);
+
+/// log-likelihood at a given mean, gradient and information by forward sensitivities.
+struct ScoreSums {
+  double log_likelihood = 0.0;
+  Eigen::VectorXd gradient;
+  Eigen::MatrixXd information;
+};
+[[nodiscard]] ScoreSums score_pass(const SampleBlock& block, const std::vector<SampleBlock>& derivatives,
+                                   const StaticSignal& signal, const MeanCurve& mean);
+
+/// Memory of the smoother, to be used again: of a long record it costs as much to get as to fill.
+struct SmootherScratch {
+  std::vector<double> steps;
+};
+/// Second moments of all states given the signal, as BlockMoments of the whole state.
+[[nodiscard]] BlockMoments moment_pass(const SampleBlock& block, const StaticSignal& signal, const MeanCurve& mean,
+                                       SmootherScratch& scratch);
+
+/// e/sqrt(S), in the order of the values.
+[[nodiscard]] std::vector<double> whitening_pass(const SampleBlock& block, const StaticSignal& signal, const MeanCurve& mean);
+
+/// Smoothed state and its variance at every `stride`-th grid point.
+struct SmoothedStates {
+  std::vector<std::uint64_t> at;
+  Eigen::MatrixXd mean;      ///< states x points
+  Eigen::MatrixXd variance;  ///< of each state
+};
+[[nodiscard]] SmoothedStates smoothing_pass(const SampleBlock& block, const StaticSignal& signal, const MeanCurve& mean,
+                                            std::size_t stride);
+
+}  // namespace coast::noise

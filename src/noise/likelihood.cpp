@@ -1,0 +1,173 @@
+#include "coast/noise/likelihood.hpp"
+
+#include <fmt/format.h>
+
+#include <Eigen/Cholesky>
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <stdexcept>
+
+#include "kalman/passes.hpp"
+
+namespace coast::noise {
+
+namespace {
+
+/// What one record gives at one u: the sums, the mean that maximises, and the log-likelihood there.
+struct Concentrated {
+  double log_likelihood = -std::numeric_limits<double>::infinity();
+  MeanCurve curve;         ///< in the grid's tau
+  Eigen::MatrixXd normal;  ///< X' V^-1 X
+};
+
+Concentrated concentrate(const SampleBlock& block, const StaticSignal& signal, Mean mean) {
+  const InnovationSums sums = innovation_pass(block, signal);
+  Concentrated result;
+  if (!sums.positive) return result;
+  const Eigen::Index m = coefficients(mean);
+  const Eigen::VectorXd right = sums.products.col(0).segment(1, m);
+  result.normal = sums.products.block(1, 1, m, m);
+  double squares = sums.products(0, 0);
+  if (m > 0) {
+    const Eigen::VectorXd x = result.normal.ldlt().solve(right);
+    squares -= right.dot(x);
+    result.curve.level = x(0);
+    if (m > 1) result.curve.drift = x(1);
+  }
+  const auto n = static_cast<double>(signal.values.size());
+  const double value = -0.5 * (n * std::log(2.0 * std::numbers::pi) + sums.log_determinant + squares);
+  if (std::isfinite(value)) result.log_likelihood = value;
+  return result;
+}
+
+MeanEstimate in_seconds(const Concentrated& fit, const Detrended& record) {
+  const Eigen::Index m = fit.normal.rows();
+  const double per_second = GridTime(record.signal).step() / record.signal.interval;
+  const Eigen::Vector2d units(1.0, per_second);
+  MeanEstimate mean;
+  mean.value = Eigen::Vector2d(record.level + fit.curve.level, record.slope + fit.curve.drift * per_second).head(m);
+  mean.covariance =
+      units.head(m).asDiagonal() * fit.normal.ldlt().solve(Eigen::MatrixXd::Identity(m, m)).eval() * units.head(m).asDiagonal();
+  return mean;
+}
+
+/// With no drift in the model the slope that was taken off beforehand has to come back.
+Detrended prepared(const StaticSignal& signal, Mean mean) {
+  Detrended record = detrend(signal);
+  if (mean == Mean::kLevelAndDrift) return record;
+  const double middle = 0.5 * static_cast<double>(signal.length() - 1);
+  const double level = mean == Mean::kZero ? record.level : 0.0;
+  for (const StaticSignal::Run& run : signal.runs)
+    for (std::size_t i = 0; i < run.count; ++i)
+      record.signal.values[run.first + i] +=
+          level + record.slope * record.signal.interval * (static_cast<double>(run.start + i) - middle);
+  record.slope = 0.0;
+  record.level -= level;
+  return record;
+}
+
+void add(const BlockMoments& more, BlockMoments& sum) {
+  sum.first += more.first;
+  sum.before += more.before;
+  sum.lagged += more.lagged;
+  sum.after += more.after;
+  sum.transitions += more.transitions;
+  sum.records += more.records;
+  sum.residual += more.residual;
+  sum.samples += more.samples;
+}
+
+BlockMoments of_term(const BlockMoments& all, const SumModel::Term& term) {
+  BlockMoments own = all;
+  const auto cut = [&](const Eigen::MatrixXd& m) {
+    return Eigen::MatrixXd(m.block(term.state, term.state, term.states, term.states));
+  };
+  own.first = cut(all.first);
+  own.before = cut(all.before);
+  own.lagged = cut(all.lagged);
+  own.after = cut(all.after);
+  return own;
+}
+
+}  // namespace
+
+Likelihood::Likelihood(const std::vector<StaticSignal>& records, SumModel model) : model_(std::move(model)) {
+  for (const StaticSignal& record : records) {
+    if (record.values.empty()) throw std::invalid_argument("Likelihood: a record without samples");
+    if (record.interval != records.front().interval)
+      throw std::invalid_argument(
+          fmt::format("Likelihood: records at intervals of {} and {} s", records.front().interval, record.interval));
+    records_.push_back(prepared(record, model_.mean()));
+  }
+  if (records_.empty()) throw std::invalid_argument("Likelihood: no record");
+}
+
+double Likelihood::samples() const {
+  double n = 0.0;
+  for (const Detrended& record : records_) n += static_cast<double>(record.signal.values.size());
+  return n;
+}
+
+SignalScale Likelihood::scale() const {
+  SignalScale scale{interval(), 0.0, 0.0};
+  for (const Detrended& record : records_) {
+    scale.duration = std::max(scale.duration, record.signal.duration());
+    scale.variance = std::max(scale.variance, record.variance);
+  }
+  return scale;
+}
+
+LikelihoodValue Likelihood::value(const std::vector<double>& u) const {
+  const SampleBlock block = model_.block(u, interval());
+  LikelihoodValue sum;
+  for (const Detrended& record : records_) {
+    const Concentrated fit = concentrate(block, record.signal, model_.mean());
+    sum.log_likelihood += fit.log_likelihood;
+    if (std::isfinite(fit.log_likelihood)) sum.means.push_back(in_seconds(fit, record));
+  }
+  return sum;
+}
+
+// The mean maximises the likelihood, so the gradient at a fixed mean is that of the maximum over it.
+LikelihoodSlope Likelihood::slope(const std::vector<double>& u) const {
+  const SampleBlock block = model_.block(u, interval());
+  const std::vector<SampleBlock> derivatives = model_.derivatives(u, interval());
+  const auto p = static_cast<Eigen::Index>(u.size());
+  LikelihoodSlope sum{0.0, Eigen::VectorXd::Zero(p), Eigen::MatrixXd::Zero(p, p)};
+  for (const Detrended& record : records_) {
+    const Concentrated fit = concentrate(block, record.signal, model_.mean());
+    sum.log_likelihood += fit.log_likelihood;
+    if (!std::isfinite(fit.log_likelihood)) return sum;
+    const ScoreSums score = score_pass(block, derivatives, record.signal, fit.curve);
+    sum.gradient += score.gradient;
+    sum.information += score.information;
+  }
+  return sum;
+}
+
+Likelihood::Expectation Likelihood::expectation(const std::vector<double>& u, std::vector<double>& memory) const {
+  const SampleBlock block = model_.block(u, interval());
+  Expectation result;
+  const Eigen::Index n = block.h.size();
+  BlockMoments sum;
+  SmootherScratch scratch{std::move(memory)};
+  sum.first = sum.before = sum.lagged = sum.after = Eigen::MatrixXd::Zero(n, n);
+  for (const Detrended& record : records_) {
+    const Concentrated fit = concentrate(block, record.signal, model_.mean());
+    result.log_likelihood += fit.log_likelihood;
+    if (!std::isfinite(fit.log_likelihood)) return result;
+    add(moment_pass(block, record.signal, fit.curve, scratch), sum);
+  }
+  memory = std::move(scratch.steps);
+  for (const SumModel::Term& term : model_.terms()) result.moments.push_back(of_term(sum, term));
+  return result;
+}
+
+std::vector<double> Likelihood::standardised_innovations(const std::vector<double>& u, std::size_t record) const {
+  const SampleBlock block = model_.block(u, interval());
+  const StaticSignal& signal = records_.at(record).signal;
+  return whitening_pass(block, signal, concentrate(block, signal, model_.mean()).curve);
+}
+
+}  // namespace coast::noise

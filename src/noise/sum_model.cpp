@@ -1,0 +1,111 @@
+#include "coast/noise/sum_model.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+namespace coast::noise {
+
+namespace {
+
+std::span<const double> own(const std::vector<double>& u, const SumModel::Term& term) {
+  return std::span(u).subspan(term.parameter, term.parameters);
+}
+
+void place(const SampleBlock& block, const SumModel::Term& term, SampleBlock& sum) {
+  const auto put = [&](const Eigen::MatrixXd& part, Eigen::MatrixXd& whole) {
+    whole.block(term.state, term.state, term.states, term.states) = part;
+  };
+  put(block.Phi, sum.Phi);
+  put(block.Q, sum.Q);
+  put(block.P1, sum.P1);
+  sum.h.segment(term.state, term.states) = block.h;
+  sum.white += block.white;
+}
+
+}  // namespace
+
+SampleBlock SampleBlock::zero(Eigen::Index states) {
+  return {Eigen::MatrixXd::Zero(states, states), Eigen::MatrixXd::Zero(states, states), Eigen::MatrixXd::Zero(states, states),
+          Eigen::RowVectorXd::Zero(states)};
+}
+
+SumModel::SumModel(const std::vector<const Estimable*>& processes, Mean mean) : mean_(mean) {
+  for (const Estimable* process : processes) {
+    const std::size_t count = process->parameters().size();
+    terms_.push_back({process, parameters_, count, states_, process->states()});
+    parameters_ += count;
+    states_ += process->states();
+  }
+}
+
+ParameterInfo SumModel::parameter(std::size_t i) const {
+  for (const Term& term : terms_)
+    if (i < term.parameter + term.parameters) return term.process->parameters()[i - term.parameter];
+  throw std::invalid_argument(fmt::format("SumModel::parameter: {} of {}", i, parameters_));
+}
+
+std::string SumModel::parameter_name(std::size_t i) const {
+  for (const Term& term : terms_) {
+    if (i >= term.parameter + term.parameters) continue;
+    const auto same = [&](const Term& other) { return other.process == term.process; };
+    const std::string name = fmt::format("{} {}", term.process->name(), term.process->parameters()[i - term.parameter].name);
+    if (std::ranges::count_if(terms_, same) == 1) return name;
+    return fmt::format("{} {}", name, 1 + std::ranges::count_if(std::span(terms_.data(), &term), same));
+  }
+  throw std::invalid_argument(fmt::format("SumModel::parameter_name: {} of {}", i, parameters_));
+}
+
+std::string SumModel::name() const {
+  std::vector<std::pair<std::string_view, int>> counts;
+  for (const Term& term : terms_) {
+    const auto found = std::ranges::find(counts, term.process->symbol(), &std::pair<std::string_view, int>::first);
+    if (found == counts.end())
+      counts.emplace_back(term.process->symbol(), 1);
+    else
+      ++found->second;
+  }
+  std::string text;
+  for (const auto& [symbol, count] : counts)
+    text += fmt::format("{}{}{}", text.empty() ? "" : " + ", count > 1 ? fmt::format("{} ", count) : "", symbol);
+  if (mean_ != Mean::kZero) text += " + level";
+  if (mean_ == Mean::kLevelAndDrift) text += " + DR";
+  return text;
+}
+
+std::vector<Interval> SumModel::ranges(const SignalScale& scale) const {
+  std::vector<Interval> all;
+  for (const Term& term : terms_)
+    for (const Interval& range : term.process->ranges(scale)) all.push_back(range);
+  return all;
+}
+
+std::vector<double> SumModel::values(const std::vector<double>& u) const {
+  std::vector<double> all(u.size());
+  for (std::size_t i = 0; i < u.size(); ++i) all[i] = parameter(i).value(u[i]);
+  return all;
+}
+
+SampleBlock SumModel::block(const std::vector<double>& u, double interval) const {
+  SampleBlock sum = SampleBlock::zero(states_);
+  for (const Term& term : terms_) place(term.process->block(own(u, term), interval), term, sum);
+  return sum;
+}
+
+std::vector<SampleBlock> SumModel::derivatives(const std::vector<double>& u, double interval) const {
+  std::vector<SampleBlock> all;
+  for (const Term& term : terms_)
+    for (const SampleBlock& slope : term.process->derivatives(own(u, term), interval)) {
+      all.push_back(SampleBlock::zero(states_));
+      place(slope, term, all.back());
+    }
+  return all;
+}
+
+std::vector<ProcessPtr> SumModel::processes(const std::vector<double>& u, Sensor sensor) const {
+  std::vector<ProcessPtr> all;
+  for (const Term& term : terms_) all.push_back(term.process->process(own(u, term), sensor));
+  return all;
+}
+
+}  // namespace coast::noise
