@@ -24,9 +24,9 @@ struct Fit {
 
 struct EmOptions {
   int iterations = 20;
-  double tolerance = 1e-9;  ///< gain of log-likelihood per iteration, below which it has converged
-  FixedParameters fixed;    ///< empty: all free
-  std::function<void(double)> progress;
+  double tolerance = 1e-9;     ///< gain of log-likelihood per iteration, below which it has converged
+  FixedParameters fixed = {};  ///< empty: all free
+  std::function<void(double)> progress = {};
 };
 /// Constrained EM (Shumway & Stoffer 1982; Holmes 2010; Stebler et al. 2011): E-step by the smoother with lag-one covariances,
 /// closed-form M-step of each process. Level and drift are set to their generalised least squares before each E-step (ECME),
@@ -37,10 +37,10 @@ struct EmOptions {
 [[nodiscard]] Fit fit_em(const Likelihood& likelihood, const std::vector<double>& start, const EmOptions& options = {});
 
 struct MaximumLikelihoodOptions {
-  FixedParameters fixed;
+  FixedParameters fixed = {};
   double tolerance = 1e-7;  ///< log-likelihood that the quadratic model still promises
   bool pyramid = true;      ///< search on block means first where these hold all that slow processes tell
-  std::function<void(double)> progress;
+  std::function<void(double)> progress = {};
 };
 /// Direct maximum likelihood: L-BFGS-B in u (logarithms) with the exact gradient on block means, then on the full record
 /// Gauss-Newton steps with the information that the same pass gives, damped until the log-likelihood rises. Parameters stay in
