@@ -1,0 +1,40 @@
+#pragma once
+// What a static record can know of the parameters: exact information and the Cramer-Rao bound, profile intervals, flat
+// directions.
+
+#include <Eigen/Core>
+#include <optional>
+#include <vector>
+
+#include "coast/noise/estimators.hpp"
+
+namespace coast::noise {
+
+/// Expected Fisher information of u in a record without holes, level and drift of the model estimated beside it:
+///
+///     I_ij = sum_k  E[de_i de_j]/S + dS_i dS_j/(2 S^2),
+///
+/// e the innovations of the filter that carries level and drift as states of unlimited prior variance (so these are the
+/// innovations of the restricted likelihood), E over records of the model itself, propagated in closed form. O(samples); a
+/// record longer than 20 000 samples on block means where its processes are slow enough for that (beta times block below 0.1:
+/// below 1 % lost), the white noise from the scatter within blocks.
+/// @param samples  of the record, at `interval`
+[[nodiscard]] Eigen::MatrixXd expected_information(const SumModel& model, const std::vector<double>& u, double interval,
+                                                   std::uint64_t samples);
+
+/// Inverse of an information matrix; a parameter of which nothing is known has an infinite variance.
+[[nodiscard]] Eigen::MatrixXd cramer_rao(const Eigen::MatrixXd& information);
+
+/// Where the profile log-likelihood is 1.92 below its maximum (95 %, chi-square of one degree of freedom). Absent: it does not
+/// fall that far within the range in which a record of this length can tell anything.
+struct ProfileInterval {
+  std::optional<double> lower;  ///< of u
+  std::optional<double> upper;
+};
+/// @param fit  the maximum  @param which  parameter
+[[nodiscard]] ProfileInterval profile_interval(const Likelihood& likelihood, const Fit& fit, std::size_t which);
+
+/// P(LR > x) where the variance tested is zero on the boundary: half chi2(0), half chi2(1).
+[[nodiscard]] double chi_bar_square_survival(double likelihood_ratio);
+
+}  // namespace coast::noise
