@@ -12,6 +12,11 @@ Registration random_walk();
 Registration gauss_markov();
 Registration scale_factor();
 Registration misalignment();
+Registration drift();
+Registration rate_ramp();
+Registration flicker();
+Registration quantisation();
+Registration ar();
 
 /// White noise of the given density, [signal]/sqrt(Hz).
 [[nodiscard]] ProcessPtr make_white_noise(double density, Sensor sensor);
