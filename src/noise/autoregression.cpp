@@ -247,21 +247,21 @@ void ContinuousForm::transition(double s, Eigen::Ref<Eigen::MatrixXd> Phi) const
 }
 
 template <typename Factor>
-void ContinuousForm::fill(Eigen::Ref<Eigen::MatrixXd> M, Factor factor) const {
+Eigen::MatrixXd ContinuousForm::of_states(Factor factor) const {
   const Eigen::Index p = mu_.size();
   Eigen::MatrixXcd of_modes(p, p);
   for (Eigen::Index i = 0; i < p; ++i)
     for (Eigen::Index j = 0; j < p; ++j) of_modes(i, j) = g_(i) * g_(j) * factor(mu_(i) + mu_(j));
-  const Eigen::MatrixXd of_states = (to_real_ * of_modes * to_real_.transpose()).real();
-  M = 0.5 * (of_states + of_states.transpose());
+  const Eigen::MatrixXd M = (to_real_ * of_modes * to_real_.transpose()).real();
+  return 0.5 * (M + M.transpose());
 }
 
 void ContinuousForm::driving_noise(double s, Eigen::Ref<Eigen::MatrixXd> Q_d) const {
-  fill(Q_d, [s](const Complex& sum) { return expm1(s * sum) / sum; });
+  Q_d = of_states([s](const Complex& sum) { return expm1(s * sum) / sum; });
 }
 
 void ContinuousForm::covariance(Eigen::Ref<Eigen::MatrixXd> P) const {
-  fill(P, [](const Complex& sum) { return -1.0 / sum; });
+  P = of_states([](const Complex& sum) { return -1.0 / sum; });
 }
 
 void ContinuousForm::output(Eigen::Ref<Eigen::RowVectorXd> h) const {

@@ -68,7 +68,7 @@ class ContinuousForm {
  private:
   ContinuousForm(const Eigen::VectorXcd& mu, const Eigen::VectorXcd& g);
   template <typename Factor>
-  void fill(Eigen::Ref<Eigen::MatrixXd> M, Factor factor) const;
+  [[nodiscard]] Eigen::MatrixXd of_states(Factor factor) const;  ///< g_i g_j factor(mu_i + mu_j), in real states
   [[nodiscard]] bool agrees_with(const Autoregression& series) const;
   Eigen::VectorXcd mu_;  ///< real modes have an imaginary part of exactly zero; of a pair the upper one stands first
   Eigen::VectorXcd g_;

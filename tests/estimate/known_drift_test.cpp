@@ -94,11 +94,11 @@ TEST(SeveralStates, EstimateIsConsistent) {
       "{process: rate_ramp, coefficient: 36000, unit: ug/h}, {process: ar, coefficients: [1.889, -0.8901], "
       "innovation_sigma: 5, unit: ug, rate_hz: 1}");
   const auto model = test::error_model(text);
-  const int runs = 40;
+  constexpr int runs = 40;
   double sum = 0.0;
   std::mt19937_64 random(12);
-  for (int seed = 0; seed < runs; ++seed) {
-    const test::Recording recording = test::make_recording({}, &model, static_cast<std::uint64_t>(100 + seed));
+  for (std::uint64_t seed = 0; seed < runs; ++seed) {
+    const test::Recording recording = test::make_recording({}, &model, 100 + seed);
     const Mission mission = recording.mission();
     FilterOptions options;
     options.withheld.push_back({test::mission_start() + 90.0, test::mission_start() + 1000.0});  // the errors act for 30 s
