@@ -11,6 +11,7 @@
 #include "coast/noise/chi_square.hpp"
 #include "coast/record/error.hpp"
 #include "model_search.hpp"
+#include "polish.hpp"
 
 namespace coast::noise {
 
@@ -108,8 +109,11 @@ AxisCalibration calibrate(const std::vector<StaticSignal>& given, const Calibrat
     result.chosen = choose(result.candidates, options.criterion);
   }
 
-  const Candidate& best = result.best();
+  Candidate& best = result.candidates[result.chosen];
   const Likelihood likelihood(records, best.model);
+  const ShortLikelihood shortened(likelihood);
+  polish([&](const std::vector<double>& u) { return likelihood.slope(u); }, box_of(likelihood, best.fit.u, {}),
+         excess_curvature(shortened, best.fit.u), {}, best.fit);
   if (options.progress) options.progress("intervals", 0.0);
   constexpr int kEmPasses = 20;
   result.em = fit_em(likelihood, fit_curve(result.curves.front(), best.model, likelihood.scale(), CurveFit::kWaveletMoments),

@@ -24,7 +24,7 @@ Fit fit_maximum_likelihood(const Likelihood& likelihood, const std::vector<doubl
   const ShortLikelihood shortened(likelihood);
   if (options.pyramid && !shortened.is_whole()) {
     fit.u = search(shortened).u;
-    polish([&](const std::vector<double>& u) { return shortened.slope(u); }, box, {}, kShortTolerance, fit);
+    polish([&](const std::vector<double>& u) { return shortened.slope(u); }, box, {}, {.tolerance = kShortTolerance}, fit);
     fit.trace.clear();
     fit.passes = 0;
     excess = excess_curvature(shortened, fit.u);
@@ -34,7 +34,8 @@ Fit fit_maximum_likelihood(const Likelihood& likelihood, const std::vector<doubl
     fit.passes += found.evaluations;
   }
   if (options.polished) {
-    polish([&](const std::vector<double>& u) { return likelihood.slope(u); }, box, excess, options.tolerance, fit);
+    polish([&](const std::vector<double>& u) { return likelihood.slope(u); }, box, excess, {.tolerance = options.tolerance},
+           fit);
   } else {
     fit.log_likelihood = shortened.value(fit.u);
   }

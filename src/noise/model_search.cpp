@@ -11,22 +11,28 @@ namespace coast::noise {
 
 namespace {
 
-/// A process that the record does not want: without its variance the likelihood is the same, or its rate has gone to where it
+/// Processes that the record does not want: without its variance the likelihood is the same, or its rate has gone to where it
 /// is another process.
-bool says_nothing(const ShortLikelihood& likelihood, const std::vector<Interval>& ranges, const SumModel& model,
-                  const std::vector<double>& u) {
+std::vector<bool> silent_terms(const ShortLikelihood& likelihood, const std::vector<Interval>& ranges, const SumModel& model,
+                               const std::vector<double>& u) {
   constexpr double kAtEnd = 1e-6;
   constexpr double kNothing = 0.02;  // of log-likelihood
   const double value = likelihood.value(u);
-  for (std::size_t i = 0; i < u.size(); ++i) {
-    const ParameterInfo::Kind kind = model.parameter(i).kind;
-    if (kind == ParameterInfo::Kind::kRate && (u[i] < ranges[i].lower + kAtEnd || u[i] > ranges[i].upper - kAtEnd)) return true;
-    if (kind != ParameterInfo::Kind::kVariance) continue;
-    std::vector<double> without = u;
-    without[i] = ranges[i].lower;
-    if (value - likelihood.value(without) < kNothing) return true;
+  std::vector<bool> silent;
+  for (const SumModel::Term& term : model.terms()) {
+    bool says_nothing = false;
+    for (std::size_t i = term.parameter; i < term.parameter + term.parameters; ++i) {
+      const ParameterInfo::Kind kind = model.parameter(i).kind;
+      says_nothing |=
+          kind == ParameterInfo::Kind::kRate && (u[i] < ranges[i].lower + kAtEnd || u[i] > ranges[i].upper - kAtEnd);
+      if (kind != ParameterInfo::Kind::kVariance) continue;
+      std::vector<double> without = u;
+      without[i] = ranges[i].lower;
+      says_nothing |= value - likelihood.value(without) < kNothing;
+    }
+    silent.push_back(says_nothing);
   }
-  return false;
+  return silent;
 }
 
 void score(const Likelihood& likelihood, Candidate& candidate) {
@@ -55,51 +61,66 @@ double held_out_score(const std::vector<StaticSignal>& records, const SumModel& 
   return sum / samples;
 }
 
-/// The sums to be tried: white noise with k Gauss-Markov processes, with and without walk, quantisation and drift.
-std::vector<SumModel> sums_to_try(const CalibrationOptions& options) {
+std::vector<const Estimable*> named(const std::vector<std::string>& names) {
+  std::vector<const Estimable*> processes;
+  for (const std::string& name : names) processes.push_back(&estimable(name));
+  return processes;
+}
+
+std::vector<const Estimable*> processes_of(const SumModel& model) {
+  std::vector<const Estimable*> processes;
+  for (const SumModel::Term& term : model.terms()) processes.push_back(term.process);
+  return processes;
+}
+
+/// The next larger sums: one more process, a drift, or an autoregression one order higher in the place of white noise.
+std::vector<SumModel> larger(const SumModel& model, const CalibrationOptions& options) {
+  const std::vector<const Estimable*> now = processes_of(model);
+  const auto has = [&](const char* name) { return std::ranges::count(now, &estimable(name)); };
   std::vector<SumModel> sums;
-  const auto named = [](const std::vector<std::string>& names) {
-    std::vector<const Estimable*> processes;
-    for (const std::string& name : names) processes.push_back(&estimable(name));
-    return processes;
+  const auto with = [&](const char* name) {
+    std::vector<const Estimable*> processes = now;
+    processes.push_back(&estimable(name));
+    sums.emplace_back(processes, model.mean());
   };
-  if (!options.processes.empty()) return {SumModel(named(options.processes), options.mean)};
-  for (int k = 0; k <= options.most_gauss_markov; ++k)
-    for (const bool walk : {false, true})
-      for (const bool quantised : {false, true})
-        for (const Mean mean : {Mean::kLevel, Mean::kLevelAndDrift}) {
-          std::vector<std::string> names{"white_noise"};
-          names.insert(names.end(), static_cast<std::size_t>(k), "gauss_markov");
-          if (walk) names.emplace_back("random_walk");
-          if (quantised) names.emplace_back("quantisation");
-          sums.emplace_back(named(names), mean);
-        }
+  if (has("gauss_markov") < options.most_gauss_markov) with("gauss_markov");
+  if (has("random_walk") == 0) with("random_walk");
+  if (has("quantisation") == 0) with("quantisation");
+  if (model.mean() != Mean::kLevelAndDrift) sums.emplace_back(now, Mean::kLevelAndDrift);
+  const std::vector<const Estimable*> bases = named({"white_noise", "ar(1)", "ar(2)", "ar(3)", "ar(4)"});
+  for (std::size_t b = 0; b + 1 < bases.size(); ++b) {
+    if (std::ranges::count(now, bases[b]) == 0) continue;
+    std::vector<const Estimable*> processes = now;
+    std::ranges::replace(processes, bases[b], bases[b + 1]);
+    sums.emplace_back(processes, model.mean());
+  }
   return sums;
 }
 
-/// Every process of `part` is in `whole`, which has more.
-bool is_part_of(const SumModel& part, const SumModel& whole) {
-  if (part.mean() != whole.mean() || part.terms().size() >= whole.terms().size()) return false;
-  const auto count = [](const SumModel& model, const Estimable* process) {
-    return std::ranges::count(model.terms(), process, &SumModel::Term::process);
-  };
-  return std::ranges::all_of(
-      part.terms(), [&](const SumModel::Term& term) { return count(part, term.process) <= count(whole, term.process); });
+/// The next smaller sums.
+std::vector<SumModel> smaller(const SumModel& model) {
+  const std::vector<const Estimable*> now = processes_of(model);
+  std::vector<SumModel> sums;
+  for (std::size_t i = 0; i < now.size() && now.size() > 1; ++i) {
+    std::vector<const Estimable*> processes = now;
+    processes.erase(processes.begin() + static_cast<std::ptrdiff_t>(i));
+    sums.emplace_back(processes, model.mean());
+  }
+  if (model.mean() == Mean::kLevelAndDrift) sums.emplace_back(now, Mean::kLevel);
+  return sums;
 }
 
-/// What smaller sums found, with the process that is new at next to nothing, or in the middle of its range.
-std::vector<std::vector<double>> starts_from(const std::vector<Candidate>& smaller, const SumModel& model,
+/// What other sums found for the processes that they share with this one, and the middle of the range for the others.
+std::vector<std::vector<double>> starts_from(const std::vector<Candidate>& others, const SumModel& model,
                                              const SignalScale& scale) {
   std::vector<std::vector<double>> starts;
   const std::vector<Interval> ranges = model.ranges(scale);
-  for (const Candidate& candidate : smaller) {
-    if (candidate.model.terms().size() + 1 < model.terms().size() || candidate.degenerate) continue;
+  for (const Candidate& candidate : others) {
     std::vector<double> u(model.parameters());
     for (std::size_t i = 0; i < u.size(); ++i) {
       const bool variance = model.parameter(i).kind == ParameterInfo::Kind::kVariance;
-      u[i] = variance ? ranges[i].upper - 15.0 : 0.5 * (ranges[i].lower + ranges[i].upper);
+      u[i] = variance ? ranges[i].upper - 10.0 : 0.5 * (ranges[i].lower + ranges[i].upper);
     }
-    std::size_t matched = 0;
     std::vector<bool> taken(model.terms().size(), false);
     for (const SumModel::Term& from : candidate.model.terms())
       for (std::size_t t = 0; t < model.terms().size(); ++t) {
@@ -108,29 +129,84 @@ std::vector<std::vector<double>> starts_from(const std::vector<Candidate>& small
         std::copy_n(candidate.fit.u.begin() + static_cast<std::ptrdiff_t>(from.parameter), from.parameters,
                     u.begin() + static_cast<std::ptrdiff_t>(to.parameter));
         taken[t] = true;
-        ++matched;
         break;
       }
-    if (matched == candidate.model.terms().size()) starts.push_back(std::move(u));
+    starts.push_back(std::move(u));
   }
   return starts;
 }
 
-/// Of a sum with a process that is not there, the likelihood is that of the sum without it.
-void take_from_smaller(const std::vector<Candidate>& smaller, const std::vector<StaticSignal>& records, Candidate& candidate) {
-  double best = -std::numeric_limits<double>::infinity();
-  for (const Candidate& other : smaller)
-    if (is_part_of(other.model, candidate.model)) best = std::max(best, other.fit.log_likelihood);
-  if (!std::isfinite(best)) return;
-  candidate.fit.log_likelihood = best;
-  score(Likelihood(records, candidate.model), candidate);
+/// A sum without the processes that say nothing of a fit; nothing where all of them speak.
+std::optional<SumModel> reduced(const std::vector<StaticSignal>& records, const Candidate& candidate) {
+  const SumModel& model = candidate.model;
+  const Likelihood likelihood(records, model);
+  const std::vector<bool> silent =
+      silent_terms(ShortLikelihood(likelihood), model.ranges(likelihood.scale()), model, candidate.fit.u);
+  std::vector<const Estimable*> processes;
+  for (std::size_t t = 0; t < silent.size(); ++t)
+    if (!silent[t]) processes.push_back(model.terms()[t].process);
+  if (processes.empty() || processes.size() == silent.size()) return {};
+  return SumModel(processes, model.mean());
 }
+
+/// Stepwise: the best of the next larger sums as long as one is better, then of the next smaller ones.
+class Search {
+ public:
+  Search(const std::vector<StaticSignal>& records, const AllanCurve& curve, const CalibrationOptions& options)
+      : records_(records), curve_(curve), options_(options) {}
+
+  std::vector<Candidate> run() {
+    std::size_t best = fit(SumModel(named({"white_noise"}), Mean::kLevel));
+    for (bool growing = true; growing;) growing = step(larger(tried_[best].model, options_), best);
+    for (bool shrinking = true; shrinking;) shrinking = step(smaller(tried_[best].model), best);
+    return std::move(tried_);
+  }
+
+ private:
+  bool step(const std::vector<SumModel>& sums, std::size_t& best) {
+    const std::size_t before = best;
+    for (const SumModel& sum : sums) {
+      const std::size_t at = fit(sum);
+      if (better(tried_[at], tried_[best], options_.criterion)) best = at;
+    }
+    return best != before;
+  }
+
+  /// The place of the sum in the table, fitted if it was not; of a sum with silent processes, that of the sum without them.
+  std::size_t fit(const SumModel& model) {
+    for (std::size_t i = 0; i < tried_.size(); ++i)
+      if (tried_[i].model.name() == model.name()) return tried_[i].degenerate ? without_silent(i) : i;
+    if (options_.progress)
+      options_.progress("fitting sums of processes", 1.0 - 1.0 / (1.0 + 0.05 * static_cast<double>(tried_.size())));
+    const SignalScale scale = Likelihood(records_, model).scale();
+    tried_.push_back(fit_candidate(records_, curve_, model, starts_from(tried_, model, scale)));
+    Candidate& last = tried_.back();
+    if (!last.degenerate && (options_.held_out || options_.criterion == Criterion::kHeldOut))
+      last.held_out = held_out_score(records_, model, last.fit.u);
+    return last.degenerate ? without_silent(tried_.size() - 1) : tried_.size() - 1;
+  }
+  std::size_t without_silent(std::size_t at) {
+    const std::optional<SumModel> rest = reduced(records_, tried_[at]);
+    if (!rest) return at;
+    const std::size_t found = fit(*rest);
+    // What is not there leaves the likelihood where it was.
+    tried_[at].fit.log_likelihood = tried_[found].fit.log_likelihood;
+    score(Likelihood(records_, tried_[at].model), tried_[at]);
+    return found;
+  }
+
+  const std::vector<StaticSignal>& records_;
+  const AllanCurve& curve_;
+  const CalibrationOptions& options_;
+  std::vector<Candidate> tried_;
+};
 
 }  // namespace
 
 Candidate fit_candidate(const std::vector<StaticSignal>& records, const AllanCurve& curve, const SumModel& model,
                         const std::vector<std::vector<double>>& starts) {
-  constexpr double kTableTolerance = 1e-3;
+  // For the table; what is chosen is polished further.
+  constexpr PolishOptions kForTheTable{.tolerance = 1e-3, .steps = 8};
   Candidate candidate;
   candidate.model = model;
   const Likelihood likelihood(records, model);
@@ -145,11 +221,11 @@ Candidate fit_candidate(const std::vector<StaticSignal>& records, const AllanCur
     best = start;
   }
   candidate.fit = fit_maximum_likelihood(likelihood, best, {.polished = shortened.is_whole()});
-  candidate.degenerate = says_nothing(shortened, model.ranges(scale), model, candidate.fit.u);
+  candidate.degenerate = std::ranges::count(silent_terms(shortened, model.ranges(scale), model, candidate.fit.u), true) > 0;
   if (!candidate.degenerate && !shortened.is_whole()) {
     Fit& fit = candidate.fit;
     polish([&](const std::vector<double>& u) { return likelihood.slope(u); }, box_of(likelihood, fit.u, {}),
-           excess_curvature(shortened, fit.u), kTableTolerance, fit);
+           excess_curvature(shortened, fit.u), kForTheTable, fit);
   }
   score(likelihood, candidate);
   return candidate;
@@ -157,34 +233,27 @@ Candidate fit_candidate(const std::vector<StaticSignal>& records, const AllanCur
 
 std::vector<Candidate> fit_candidates(const std::vector<StaticSignal>& records, const AllanCurve& curve,
                                       const CalibrationOptions& options) {
-  const std::vector<SumModel> sums = sums_to_try(options);
-  const SignalScale scale = Likelihood(records, sums.front()).scale();
-  std::vector<Candidate> candidates;
-  for (const SumModel& model : sums) {
-    if (options.progress)
-      options.progress("fitting sums of processes", static_cast<double>(candidates.size()) / static_cast<double>(sums.size()));
-    candidates.push_back(fit_candidate(records, curve, model, starts_from(candidates, model, scale)));
-    Candidate& last = candidates.back();
-    if (last.degenerate) take_from_smaller(candidates, records, last);
-    if (!last.degenerate && (options.held_out || options.criterion == Criterion::kHeldOut))
-      last.held_out = held_out_score(records, model, last.fit.u);
-  }
-  return candidates;
+  if (options.processes.empty()) return Search(records, curve, options).run();
+  std::vector<Candidate> stated{fit_candidate(records, curve, SumModel(named(options.processes), options.mean), {})};
+  if (options.held_out || options.criterion == Criterion::kHeldOut)
+    stated.front().held_out = held_out_score(records, stated.front().model, stated.front().fit.u);
+  return stated;
 }
 
-std::size_t choose(const std::vector<Candidate>& candidates, Criterion criterion) {
+bool better(const Candidate& a, const Candidate& b, Criterion criterion) {
   const auto cost = [&](const Candidate& c) {
     if (!std::isfinite(c.fit.log_likelihood)) return std::numeric_limits<double>::infinity();
     if (criterion == Criterion::kHeldOut) return c.held_out ? -*c.held_out : std::numeric_limits<double>::infinity();
     return criterion == Criterion::kBic ? c.bic : c.aicc;
   };
+  return a.degenerate != b.degenerate ? b.degenerate : cost(a) < cost(b);
+}
+
+std::size_t choose(const std::vector<Candidate>& candidates, Criterion criterion) {
   std::size_t best = 0;
-  for (std::size_t i = 1; i < candidates.size(); ++i) {
-    const Candidate& a = candidates[i];
-    const Candidate& b = candidates[best];
-    if (a.degenerate != b.degenerate ? b.degenerate : cost(a) < cost(b)) best = i;
-  }
-  if (!std::isfinite(cost(candidates[best])))
+  for (std::size_t i = 1; i < candidates.size(); ++i)
+    if (better(candidates[i], candidates[best], criterion)) best = i;
+  if (!std::isfinite(candidates[best].fit.log_likelihood))
     throw NumericalError("no sum of processes has a finite likelihood", "", "is the signal constant?");
   return best;
 }

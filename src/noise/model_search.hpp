@@ -10,11 +10,14 @@ namespace coast::noise {
 [[nodiscard]] Candidate fit_candidate(const std::vector<StaticSignal>& records, const AllanCurve& curve, const SumModel& model,
                                       const std::vector<std::vector<double>>& starts);
 
-/// Every sum of the options, smaller ones first. @return in the order of the table
+/// The sum that the options state, or all that a stepwise search tried, in its order.
 [[nodiscard]] std::vector<Candidate> fit_candidates(const std::vector<StaticSignal>& records, const AllanCurve& curve,
                                                     const CalibrationOptions& options);
 
-/// Index of the best by the criterion; degenerate ones stand behind.
+/// By the criterion; a sum with a process that says nothing stands behind any other.
+[[nodiscard]] bool better(const Candidate& a, const Candidate& b, Criterion criterion);
+
+/// Index of the best.
 [[nodiscard]] std::size_t choose(const std::vector<Candidate>& candidates, Criterion criterion);
 
 }  // namespace coast::noise

@@ -97,10 +97,9 @@ std::vector<Interval> box_of(const Likelihood& likelihood, const std::vector<dou
   return box;
 }
 
-void polish(const SlopeFunction& likelihood, const std::vector<Interval>& box, const Eigen::MatrixXd& excess, double tolerance,
-            Fit& fit) {
-  constexpr int kSteps = 60;
-  Polish(likelihood, box, excess, fit).run(tolerance, kSteps);
+void polish(const SlopeFunction& likelihood, const std::vector<Interval>& box, const Eigen::MatrixXd& excess,
+            const PolishOptions& options, Fit& fit) {
+  Polish(likelihood, box, excess, fit).run(options.tolerance, options.steps);
 }
 
 Eigen::MatrixXd excess_curvature(const ShortLikelihood& likelihood, const std::vector<double>& u) {

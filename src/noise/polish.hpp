@@ -10,13 +10,17 @@ namespace coast::noise {
 [[nodiscard]] std::vector<Interval> box_of(const Likelihood& likelihood, const std::vector<double>& start,
                                            const FixedParameters& fixed);
 
-/// Gauss-Newton with Levenberg's damping, within the box, until the quadratic model promises less than `tolerance` of
+/// Gauss-Newton with Levenberg's damping, within the box, until the quadratic model promises less than the tolerance of
 /// log-likelihood.
 /// @param excess  of the curvature over the information, known from block means; empty: taken as none
 /// @param fit     start in, optimum out; trace and passes are added to
 using SlopeFunction = std::function<LikelihoodSlope(const std::vector<double>&)>;
-void polish(const SlopeFunction& likelihood, const std::vector<Interval>& box, const Eigen::MatrixXd& excess, double tolerance,
-            Fit& fit);
+struct PolishOptions {
+  double tolerance = 1e-7;
+  int steps = 60;  ///< at most
+};
+void polish(const SlopeFunction& likelihood, const std::vector<Interval>& box, const Eigen::MatrixXd& excess,
+            const PolishOptions& options, Fit& fit);
 
 /// Minus the Hessian of the log-likelihood by central differences of its gradient, less the information.
 [[nodiscard]] Eigen::MatrixXd excess_curvature(const ShortLikelihood& likelihood, const std::vector<double>& u);

@@ -25,7 +25,7 @@ class Profile {
     fit.u[which_] = top_.u[which_] + direction_ * distance;
     const std::vector<Interval> box = box_of(likelihood_, fit.u, fixed);
     constexpr double kTolerance = 1e-4;
-    polish([this](const std::vector<double>& u) { return likelihood_.slope(u); }, box, {}, kTolerance, fit);
+    polish([this](const std::vector<double>& u) { return likelihood_.slope(u); }, box, {}, {.tolerance = kTolerance}, fit);
     nuisance_ = fit.u;
     return std::sqrt(2.0 * std::max(0.0, top_.log_likelihood - fit.log_likelihood));
   }
@@ -82,7 +82,8 @@ ProfileInterval profile_interval(const Likelihood& likelihood, const Fit& fit, s
   const Likelihood& coarse = means ? *means : likelihood;
   Fit top;
   top.u = fit.u;
-  polish([&](const std::vector<double>& u) { return coarse.slope(u); }, box_of(coarse, top.u, {}), {}, 1e-6, top);
+  polish([&](const std::vector<double>& u) { return coarse.slope(u); }, box_of(coarse, top.u, {}), {}, {.tolerance = 1e-6},
+         top);
 
   const Interval range = likelihood.model().ranges(likelihood.scale())[which];
   const double guess = std::isfinite(sd) ? std::clamp(kRoot95 * sd, 0.01, 2.0) : 1.0;

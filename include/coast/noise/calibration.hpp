@@ -13,8 +13,9 @@ enum class Criterion { kBic, kAicc, kHeldOut };
 
 struct CalibrationOptions {
   Sensor sensor = Sensor::kGyro;
-  /// Names of the registry; empty: all sums of white noise, up to `most_gauss_markov` Gauss-Markov processes, random walk and
-  /// quantisation are tried, each with and without drift.
+  /// Names of the registry; empty: searched stepwise, from white noise and a level, over sums with up to `most_gauss_markov`
+  /// Gauss-Markov processes, random walk, quantisation, drift, and an autoregression in the place of white noise (the sensor's
+  /// own filter).
   std::vector<std::string> processes = {};
   Mean mean = Mean::kLevelAndDrift;  ///< with `processes`
   int most_gauss_markov = 3;

@@ -182,14 +182,21 @@ class EstimableAr final : public Estimable {
     return all;
   }
   [[nodiscard]] Index states() const override { return order_; }
-  [[nodiscard]] bool has_averages() const override { return false; }
+  /// As white noise of the same density at frequency zero: what is left out falls with the length of a block.
+  [[nodiscard]] bool has_averages() const override { return true; }
   [[nodiscard]] std::vector<Interval> ranges(const SignalScale& scale) const override {
     constexpr double kNearOne = 9.0;  // tanh 9 is 3e-8 from 1
     std::vector<Interval> all(static_cast<std::size_t>(order_), {-kNearOne, kNearOne});
     all.push_back(log_variance_range(scale.variance));
     return all;
   }
-  [[nodiscard]] SampleBlock block(std::span<const double> u, const SampleStep&) const override {
+  [[nodiscard]] SampleBlock block(std::span<const double> u, const SampleStep& step) const override {
+    if (step.averaged > 1) {
+      SampleBlock means = SampleBlock::zero(0);
+      const double gain = 1.0 / (1.0 - from_partial(partial_of(u)).a.sum());
+      means.white = std::exp(u[static_cast<std::size_t>(order_)]) * gain * gain / static_cast<double>(step.averaged);
+      return means;
+    }
     SampleBlock block = SampleBlock::zero(order_);
     block.Phi.row(0) = from_partial(partial_of(u)).a.transpose();
     for (Index i = 1; i < order_; ++i) block.Phi(i, i - 1) = 1.0;
@@ -203,6 +210,15 @@ class EstimableAr final : public Estimable {
     const VectorXd partial = partial_of(u);
     const MatrixXd slope = from_partial(partial).slope;
     std::vector<SampleBlock> all;
+    if (step.averaged > 1) {
+      const double gain = 1.0 / (1.0 - from_partial(partial).a.sum());
+      for (Index i = 0; i < order_; ++i) {
+        all.push_back(at);
+        all.back().white *= 2.0 * gain * slope.col(i).sum() * (1.0 - partial(i) * partial(i));
+      }
+      all.push_back(at);
+      return all;
+    }
     for (Index i = 0; i < order_; ++i) {
       SampleBlock by_partial = SampleBlock::zero(order_);
       by_partial.Phi.row(0) = (1.0 - partial(i) * partial(i)) * slope.col(i).transpose();
