@@ -54,6 +54,7 @@ struct Combination {
   double relative_sd = 0.0;
 };
 
+/// A sample that one clean record in a hundred would have.
 struct Outlier {
   std::size_t record = 0;
   double time_s = 0.0;  ///< from the first sample
@@ -87,7 +88,6 @@ struct AxisCalibration {
   std::vector<Combination> combinations;  ///< from the best known to the least
   std::vector<std::string> remarks;       ///< what this record cannot tell
   std::vector<Outlier> outliers;
-  std::size_t outliers_expected_below = 0;  ///< of 1 in 100 records one would have more than this many
   bool outliers_excluded = false;
   Whiteness whiteness;
   CurveBand band;

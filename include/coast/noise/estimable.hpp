@@ -66,6 +66,8 @@ class Estimable {
   [[nodiscard]] virtual std::string_view symbol() const = 0;  ///< as in "WN + 2 GM + RW"
   [[nodiscard]] virtual std::vector<ParameterInfo> parameters() const = 0;
   [[nodiscard]] virtual Eigen::Index states() const = 0;
+  /// Whether block means that are short against its rates are again the same process with the same parameters.
+  [[nodiscard]] virtual bool survives_averaging() const { return true; }
   /// Range of each u in which a record of this scale can tell anything.
   [[nodiscard]] virtual std::vector<Interval> ranges(const SignalScale& scale) const = 0;
   /// The block at u over one sample interval (s), and its derivatives with respect to each u (h has none).

@@ -54,13 +54,13 @@ struct SmootherScratch {
 /// e/sqrt(S), in the order of the values.
 [[nodiscard]] std::vector<double> whitening_pass(const SampleBlock& block, const StaticSignal& signal, const MeanCurve& mean);
 
-/// Smoothed state and its variance at every `stride`-th grid point.
-struct SmoothedStates {
+/// Smoothed outputs (rows times state) and their variances at every `stride`-th grid point.
+struct SmoothedOutputs {
   std::vector<std::uint64_t> at;
-  Eigen::MatrixXd mean;      ///< states x points
-  Eigen::MatrixXd variance;  ///< of each state
+  Eigen::MatrixXd mean;  ///< rows x points
+  Eigen::MatrixXd variance;
 };
-[[nodiscard]] SmoothedStates smoothing_pass(const SampleBlock& block, const StaticSignal& signal, const MeanCurve& mean,
-                                            std::size_t stride);
+[[nodiscard]] SmoothedOutputs smoothing_pass(const SampleBlock& block, const Eigen::MatrixXd& rows, const StaticSignal& signal,
+                                             const MeanCurve& mean, std::size_t stride);
 
 }  // namespace coast::noise

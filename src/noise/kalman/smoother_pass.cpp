@@ -176,37 +176,38 @@ BlockMoments moments(const SampleBlock& block, const StaticSignal& signal, const
   return result;
 }
 
-/// Every `stride`-th smoothed state. A variance that rests is noted at the first of its steps and spread afterwards.
+/// Every `stride`-th smoothed output. A variance that rests is noted at the first of its steps and spread afterwards.
 template <int N>
-struct StateCollector {
+struct OutputCollector {
   using Matrix = typename FixedModel<N>::Matrix;
   using Vector = typename FixedModel<N>::Vector;
 
   void state(std::size_t step, const Vector&, double, const Vector& x, bool) {
-    if (step % stride == 0) result.mean.col(column(step)) = x.head(result.mean.rows());
+    if (step % stride == 0) result.mean.col(column(step)) = rows * x.head(rows.cols());
   }
   void covariance(std::size_t step, const Matrix& V, const Matrix&, bool, double times) {
     const std::size_t end = step + static_cast<std::size_t>(times);
+    const Eigen::VectorXd variance = (rows * V.topLeftCorner(rows.cols(), rows.cols()) * rows.transpose()).diagonal();
     for (std::size_t at = (step + stride - 1) / stride * stride; at < end; at += stride)
-      result.variance.col(column(at)) = V.diagonal().head(result.mean.rows());
+      result.variance.col(column(at)) = variance;
   }
   [[nodiscard]] Eigen::Index column(std::size_t step) const { return static_cast<Eigen::Index>(step / stride); }
 
+  const Eigen::MatrixXd& rows;
   std::size_t stride;
-  SmoothedStates& result;
+  SmoothedOutputs& result;
 };
 
 template <int N>
-SmoothedStates smoothed_states(const SampleBlock& block, const StaticSignal& signal, const MeanCurve& mean,
-                               std::size_t stride) {
+SmoothedOutputs smoothed_outputs(const SampleBlock& block, const Eigen::MatrixXd& rows, const StaticSignal& signal,
+                                 const MeanCurve& mean, std::size_t stride) {
   SmootherScratch scratch;
   SmootherPass<N> pass(block, scratch);
   pass.forward(signal, mean);
-  const Eigen::Index n = block.h.size();
   const auto points = static_cast<Eigen::Index>((pass.steps() + stride - 1) / stride);
-  SmoothedStates result{{}, Eigen::MatrixXd(n, points), Eigen::MatrixXd(n, points)};
+  SmoothedOutputs result{{}, Eigen::MatrixXd(rows.rows(), points), Eigen::MatrixXd(rows.rows(), points)};
   for (Eigen::Index i = 0; i < points; ++i) result.at.push_back(static_cast<std::uint64_t>(i) * stride);
-  StateCollector<N> collector{stride, result};
+  OutputCollector<N> collector{rows, stride, result};
   pass.backward(collector);
   return result;
 }
@@ -218,8 +219,9 @@ BlockMoments moment_pass(const SampleBlock& block, const StaticSignal& signal, c
   return with_size(block.h.size(), [&](auto size) { return moments<size()>(block, signal, mean, scratch); });
 }
 
-SmoothedStates smoothing_pass(const SampleBlock& block, const StaticSignal& signal, const MeanCurve& mean, std::size_t stride) {
-  return with_size(block.h.size(), [&](auto size) { return smoothed_states<size()>(block, signal, mean, stride); });
+SmoothedOutputs smoothing_pass(const SampleBlock& block, const Eigen::MatrixXd& rows, const StaticSignal& signal,
+                               const MeanCurve& mean, std::size_t stride) {
+  return with_size(block.h.size(), [&](auto size) { return smoothed_outputs<size()>(block, rows, signal, mean, stride); });
 }
 
 }  // namespace coast::noise

@@ -1,0 +1,143 @@
+#include "coast/noise/calibration.hpp"
+
+#include <fmt/format.h>
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+
+#include "calibration_checks.hpp"
+#include "coast/noise/chi_square.hpp"
+#include "coast/record/error.hpp"
+#include "model_search.hpp"
+
+namespace coast::noise {
+
+namespace {
+
+constexpr std::size_t kFewestSamples = 100;
+
+/// Where the outliers are in the values of a record.
+std::vector<std::size_t> places_of(const std::vector<Outlier>& outliers, const StaticSignal& signal, std::size_t record) {
+  std::vector<std::size_t> places;
+  for (const Outlier& outlier : outliers) {
+    if (outlier.record != record) continue;
+    const auto at = static_cast<std::uint64_t>(std::llround(outlier.time_s / signal.interval));
+    const auto run = std::ranges::upper_bound(signal.runs, at, {}, &StaticSignal::Run::start) - 1;
+    places.push_back(run->first + static_cast<std::size_t>(at - run->start));
+  }
+  return places;
+}
+
+std::vector<Outlier> find_outliers(const Likelihood& likelihood, const std::vector<double>& u) {
+  std::vector<Outlier> all;
+  for (std::size_t r = 0; r < likelihood.records().size(); ++r)
+    for (const Outlier& outlier : outliers_of(likelihood.records()[r].signal, likelihood.standardised_innovations(u, r), r))
+      all.push_back(outlier);
+  return all;
+}
+
+AllanCurve detrended_curve(const StaticSignal& signal) {
+  return allan_curve(detrend(signal).signal);
+}
+
+/// One set of parameters for all records against one for each: likelihood ratio, chi-square.
+std::optional<double> test_of_common_parameters(const std::vector<StaticSignal>& records, const Candidate& joint) {
+  if (records.size() < 2) return {};
+  double separate = 0.0;
+  for (const StaticSignal& record : records)
+    separate += fit_maximum_likelihood(Likelihood({record}, joint.model), joint.fit.u).log_likelihood;
+  const double ratio = 2.0 * (separate - joint.fit.log_likelihood);
+  const auto dof = static_cast<double>(joint.model.parameters() * (records.size() - 1));
+  return chi2_survival(dof, std::max(0.0, ratio));
+}
+
+/// 95 % of the refits to realisations of the estimate, in logarithms about the estimate.
+void bootstrap_intervals(const Likelihood& likelihood, const Fit& fit, const CalibrationOptions& options,
+                         std::vector<ParameterEstimate>& parameters) {
+  const SumModel& model = likelihood.model();
+  const auto count = static_cast<std::size_t>(options.bootstrap);
+  std::vector<std::vector<double>> refits(count);
+  tbb::parallel_for(std::size_t{0}, count, [&](std::size_t i) {
+    std::vector<StaticSignal> drawn;
+    for (std::size_t r = 0; r < likelihood.records().size(); ++r) {
+      StaticSignal signal = likelihood.records()[r].signal;  // the same holes
+      const StaticSignal whole =
+          realisation(model, fit.u, signal.interval, signal.length(), options.seed + 1000003ULL * (i + 1) + r);
+      for (const StaticSignal::Run& run : signal.runs)
+        std::copy_n(whole.values.begin() + static_cast<std::ptrdiff_t>(run.start), run.count,
+                    signal.values.begin() + static_cast<std::ptrdiff_t>(run.first));
+      drawn.push_back(std::move(signal));
+    }
+    refits[i] = fit_maximum_likelihood(Likelihood(drawn, model), fit.u).u;
+  });
+  for (std::size_t p = 0; p < parameters.size(); ++p) {
+    std::vector<double> off;
+    for (const auto& u : refits) off.push_back(u[p] - fit.u[p]);
+    std::ranges::sort(off);
+    const auto quantile = [&](double q) {
+      return off[static_cast<std::size_t>(q * static_cast<double>(off.size() - 1) + 0.5)];
+    };
+    // Basic bootstrap: the estimate is to the truth as the refits are to the estimate.
+    parameters[p].lower = model.parameter(p).value(fit.u[p] - quantile(0.975));
+    parameters[p].upper = model.parameter(p).value(fit.u[p] - quantile(0.025));
+  }
+}
+
+}  // namespace
+
+AxisCalibration calibrate(const std::vector<StaticSignal>& given, const CalibrationOptions& options) {
+  const auto began = std::chrono::steady_clock::now();
+  for (const StaticSignal& record : given)
+    if (record.values.size() < kFewestSamples)
+      throw NumericalError(
+          "too few samples", "",
+          fmt::format("{} has {}, at least {} are needed", record.source, record.values.size(), kFewestSamples));
+  AxisCalibration result;
+  std::vector<StaticSignal> records = given;
+  for (const StaticSignal& record : records) result.curves.push_back(detrended_curve(record));
+  result.reading = read_coefficients(result.curves.front());
+  result.candidates = fit_candidates(records, result.curves.front(), options);
+  result.chosen = choose(result.candidates, options.criterion);
+
+  result.outliers = find_outliers(Likelihood(records, result.best().model), result.best().fit.u);
+  if (options.exclude_outliers && !result.outliers.empty()) {
+    for (std::size_t r = 0; r < records.size(); ++r) {
+      records[r] = without(records[r], places_of(result.outliers, records[r], r));
+      result.curves[r] = detrended_curve(records[r]);
+    }
+    result.outliers_excluded = true;
+    result.candidates = fit_candidates(records, result.curves.front(), options);
+    result.chosen = choose(result.candidates, options.criterion);
+  }
+
+  const Candidate& best = result.best();
+  const Likelihood likelihood(records, best.model);
+  if (options.progress) options.progress("intervals", 0.0);
+  constexpr int kEmPasses = 20;
+  result.em = fit_em(likelihood, fit_curve(result.curves.front(), best.model, likelihood.scale(), CurveFit::kWaveletMoments),
+                     {.iterations = kEmPasses});
+  result.means = likelihood.value(best.fit.u).means;
+  Eigen::MatrixXd information =
+      Eigen::MatrixXd::Zero(static_cast<Eigen::Index>(best.fit.u.size()), static_cast<Eigen::Index>(best.fit.u.size()));
+  double duration = 0.0;
+  for (const StaticSignal& record : records) {
+    information += expected_information(best.model, best.fit.u, record.interval, record.length());
+    duration += record.duration();
+  }
+  const Eigen::MatrixXd covariance = cramer_rao(information);
+  result.parameters = parameters_of(likelihood, best.fit, covariance, options);
+  if (options.bootstrap > 0) bootstrap_intervals(likelihood, best.fit, options, result.parameters);
+  result.combinations = combinations_of(best.model, information);
+  result.remarks = remarks_of(best.model, result.parameters, covariance, duration);
+  result.whiteness = whiteness_of(likelihood.standardised_innovations(best.fit.u, 0), static_cast<int>(best.fit.u.size()));
+  result.common_parameters_p = test_of_common_parameters(records, best);
+  if (options.progress) options.progress("realisations of the estimate", 0.0);
+  result.band = band_of(allan_curve(records.front()), best.model, best.fit.u, records.front(),
+                        best.model.mean() == Mean::kLevelAndDrift ? result.means.front().value(1) : 0.0, options);
+  result.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - began).count();
+  return result;
+}
+
+}  // namespace coast::noise

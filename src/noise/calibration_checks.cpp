@@ -1,0 +1,182 @@
+#include "calibration_checks.hpp"
+
+#include <fmt/format.h>
+#include <tbb/parallel_for.h>
+
+#include <Eigen/Eigenvalues>
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+#include "coast/noise/chi_square.hpp"
+
+namespace coast::noise {
+
+namespace {
+
+constexpr double kQuarter = 0.25;  // "known": a standard deviation of a quarter
+
+/// Seconds of a grid index's sample.
+std::vector<double> times_of(const StaticSignal& signal) {
+  std::vector<double> times;
+  times.reserve(signal.values.size());
+  for (const StaticSignal::Run& run : signal.runs)
+    for (std::size_t i = 0; i < run.count; ++i) times.push_back(static_cast<double>(run.start + i) * signal.interval);
+  return times;
+}
+
+/// x with P(|z| > x) = p of a standard normal.
+double normal_bound(double p) {
+  return std::sqrt(chi2_upper_quantile(1.0, p));
+}
+
+}  // namespace
+
+Whiteness whiteness_of(const std::vector<double>& standardised, int fitted_parameters) {
+  constexpr std::size_t kLags = 40;
+  Whiteness result;
+  const auto n = static_cast<double>(standardised.size());
+  const double variance = std::inner_product(standardised.begin(), standardised.end(), standardised.begin(), 0.0) / n;
+  double q = 0.0;
+  const std::size_t lags = std::min(kLags, standardised.size() / 4);
+  for (std::size_t lag = 1; lag <= lags; ++lag) {
+    double sum = 0.0;
+    for (std::size_t i = lag; i < standardised.size(); ++i) sum += standardised[i] * standardised[i - lag];
+    const double r = sum / (n * variance);
+    result.autocorrelation.push_back(r);
+    q += r * r / (n - static_cast<double>(lag));
+  }
+  const double dof = std::max(1.0, static_cast<double>(lags) - fitted_parameters);
+  result.p_value = chi2_survival(dof, n * (n + 2.0) * q);
+  return result;
+}
+
+std::vector<Outlier> outliers_of(const StaticSignal& signal, const std::vector<double>& standardised, std::size_t record) {
+  const double bound = normal_bound(0.01 / static_cast<double>(standardised.size()));
+  const std::vector<double> times = times_of(signal);
+  std::vector<Outlier> outliers;
+  for (std::size_t i = 0; i < standardised.size(); ++i)
+    if (std::abs(standardised[i]) > bound) outliers.push_back({record, times[i], standardised[i]});
+  return outliers;
+}
+
+// The band: pointwise quantiles would be left somewhere by most realisations; the largest standardised departure over all
+// averaging times has one quantile that 95 % of the realisations keep to everywhere.
+CurveBand band_of(const AllanCurve& curve, const SumModel& model, const std::vector<double>& u, const StaticSignal& signal,
+                  double slope, const CalibrationOptions& options) {
+  CurveBand band;
+  const auto count = static_cast<std::size_t>(options.realisations);
+  if (count < 20) return band;
+  const std::size_t points = curve.size();
+  std::vector<std::vector<double>> logs(count, std::vector<double>(points));
+  tbb::parallel_for(std::size_t{0}, count, [&](std::size_t i) {
+    StaticSignal drawn = realisation(model, u, signal.interval, signal.length(), options.seed + 1 + i);
+    for (std::size_t k = 0; k < drawn.values.size(); ++k) drawn.values[k] += slope * static_cast<double>(k) * signal.interval;
+    const AllanCurve there = allan_curve(drawn);
+    std::size_t at = 0;
+    for (std::size_t p = 0; p < points; ++p) {
+      while (at + 1 < there.size() && there[at].factor < curve[p].factor) ++at;
+      logs[i][p] = std::log(there[at].allan.value);
+    }
+  });
+  std::vector<double> mean(points, 0.0);
+  std::vector<double> sd(points, 0.0);
+  const auto n = static_cast<double>(count);
+  for (std::size_t p = 0; p < points; ++p) {
+    for (const auto& one : logs) mean[p] += one[p] / n;
+    for (const auto& one : logs) sd[p] += (one[p] - mean[p]) * (one[p] - mean[p]) / (n - 1.0);
+    sd[p] = std::sqrt(sd[p]);
+  }
+  std::vector<double> largest(count, 0.0);
+  for (std::size_t i = 0; i < count; ++i)
+    for (std::size_t p = 0; p < points; ++p) largest[i] = std::max(largest[i], std::abs(logs[i][p] - mean[p]) / sd[p]);
+  std::ranges::sort(largest);
+  const double width = largest[std::min(count - 1, static_cast<std::size_t>(std::ceil(0.95 * n)) - 1)];
+  band.inside = true;
+  for (std::size_t p = 0; p < points; ++p) {
+    band.tau.push_back(curve[p].tau);
+    band.lower.push_back(std::exp(mean[p] - width * sd[p]));
+    band.median.push_back(std::exp(mean[p]));
+    band.upper.push_back(std::exp(mean[p] + width * sd[p]));
+    band.inside = band.inside && curve[p].allan.value >= band.lower.back() && curve[p].allan.value <= band.upper.back();
+  }
+  return band;
+}
+
+std::vector<ParameterEstimate> parameters_of(const Likelihood& likelihood, const Fit& fit, const Eigen::MatrixXd& covariance,
+                                             const CalibrationOptions& options) {
+  const SumModel& model = likelihood.model();
+  const double duration = likelihood.scale().duration;
+  std::vector<ParameterEstimate> all(model.parameters());
+  tbb::parallel_for(std::size_t{0}, all.size(), [&](std::size_t i) {
+    const ParameterInfo info = model.parameter(i);
+    ParameterEstimate& estimate = all[i];
+    estimate.name = model.parameter_name(i);
+    estimate.unit = info.unit;
+    estimate.value = info.value(fit.u[i]);
+    const auto at = static_cast<Eigen::Index>(i);
+    estimate.relative_bound = std::sqrt(covariance(at, at));
+    const double ratio = estimate.relative_bound / kQuarter;
+    estimate.duration_for_quarter = duration * ratio * ratio;
+    if (options.bootstrap > 0) return;
+    const ProfileInterval interval = profile_interval(likelihood, fit, i);
+    if (interval.lower) estimate.lower = info.value(*interval.lower);
+    if (interval.upper) estimate.upper = info.value(*interval.upper);
+  });
+  return all;
+}
+
+std::vector<Combination> combinations_of(const SumModel& model, const Eigen::MatrixXd& information) {
+  constexpr double kShown = 0.2;
+  std::vector<Combination> all;
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(information);
+  for (Eigen::Index k = information.rows() - 1; k >= 0; --k) {
+    Combination combination;
+    Eigen::VectorXd direction = eigen.eigenvectors().col(k);
+    Eigen::Index largest = 0;
+    direction.cwiseAbs().maxCoeff(&largest);
+    // Powers relative to the largest, so that the product reads as one does on paper.
+    combination.relative_sd = 1.0 / std::sqrt(std::max(eigen.eigenvalues()(k), 1e-300)) / std::abs(direction(largest));
+    direction /= direction(largest);
+    for (Eigen::Index i = 0; i < direction.size(); ++i) {
+      if (std::abs(direction(i)) < kShown) continue;
+      const std::string name = model.parameter_name(static_cast<std::size_t>(i));
+      combination.text += combination.text.empty() ? "" : " * ";
+      combination.text +=
+          std::abs(direction(i) - 1.0) < 0.05 ? fmt::format("({})", name) : fmt::format("({})^{:.2g}", name, direction(i));
+    }
+    all.push_back(std::move(combination));
+  }
+  return all;
+}
+
+std::vector<std::string> remarks_of(const SumModel& model, const std::vector<ParameterEstimate>& parameters,
+                                    const Eigen::MatrixXd& covariance, double duration) {
+  constexpr double kUnknown = 0.5;
+  std::vector<std::string> remarks;
+  for (const SumModel::Term& term : model.terms()) {
+    const auto at = static_cast<Eigen::Index>(term.parameter);
+    if (term.process->symbol() != "GM" || !std::isfinite(covariance(at, at))) continue;
+    const double product = std::sqrt(covariance(at, at) + 2.0 * covariance(at, at + 1) + covariance(at + 1, at + 1));
+    const ParameterEstimate& beta = parameters[term.parameter];
+    const ParameterEstimate& sigma2 = parameters[term.parameter + 1];
+    if (beta.relative_bound < kUnknown && sigma2.relative_bound < kUnknown) continue;
+    remarks.push_back(fmt::format(
+        "{} and {} cannot be told apart from this record ({:.0f} s): alone they are known to {:.0f} % and {:.0f} %, their "
+        "product "
+        "2 beta sigma2 = {:.4g} (the strength of the random walk that it looks like) to {:.0f} %. To know each to 25 % takes a "
+        "record of {:.2g} h.",
+        beta.name, sigma2.name, duration, 100.0 * beta.relative_bound, 100.0 * sigma2.relative_bound,
+        2.0 * beta.value * sigma2.value, 100.0 * product,
+        std::max(beta.duration_for_quarter, sigma2.duration_for_quarter) / 3600.0));
+  }
+  for (std::size_t i = 0; i < parameters.size(); ++i) {
+    const ParameterEstimate& p = parameters[i];
+    if (model.parameter(i).kind != ParameterInfo::Kind::kVariance || p.relative_bound < 2.0) continue;
+    remarks.push_back(fmt::format("{} cannot be seen in this record: it would have to be known to {:.3g} times itself.", p.name,
+                                  p.relative_bound));
+  }
+  return remarks;
+}
+
+}  // namespace coast::noise

@@ -1,0 +1,178 @@
+// The expected information of restricted maximum likelihood, and what follows from an information matrix.
+
+#include <Eigen/Eigenvalues>
+#include <cmath>
+#include <limits>
+
+#include "block_rule.hpp"
+#include "coast/noise/chi_square.hpp"
+#include "coast/noise/uncertainty.hpp"
+
+namespace coast::noise {
+
+namespace {
+
+using Matrix = Eigen::MatrixXd;
+using Vector = Eigen::VectorXd;
+
+/// The block with level and drift as states of a prior so wide that what it adds is below rounding.
+SampleBlock with_mean_states(const SampleBlock& block, Mean mean, double samples) {
+  const Eigen::Index n = block.h.size();
+  const Eigen::Index m = coefficients(mean);
+  SampleBlock wide = SampleBlock::zero(n + m);
+  const auto put = [&](const Matrix& from, Matrix& to) { to.topLeftCorner(n, n) = from; };
+  put(block.Phi, wide.Phi);
+  put(block.Q, wide.Q);
+  put(block.P1, wide.P1);
+  wide.h.head(n) = block.h;
+  wide.white = block.white;
+  if (m == 0) return wide;
+  constexpr double kWide = 1e7;  // times the variance: P1 loses half of its digits, the information one part in 1e7
+  const double variance =
+      kWide * (block.white + (block.h * block.P1 * block.h.transpose()).value() + samples * block.Q.trace());
+  wide.h(n) = 1.0;
+  wide.Phi(n, n) = 1.0;
+  wide.P1(n, n) = variance;
+  if (m == 1) return wide;
+  wide.Phi(n + 1, n + 1) = 1.0;
+  wide.Phi(n, n + 1) = 2.0 / samples;  // over the record the drift adds twice its state
+  wide.P1(n + 1, n + 1) = variance;
+  return wide;
+}
+
+SampleBlock widened(const SampleBlock& derivative, Eigen::Index size) {
+  SampleBlock wide = SampleBlock::zero(size);
+  const Eigen::Index n = derivative.h.size();
+  wide.Phi.topLeftCorner(n, n) = derivative.Phi;
+  wide.Q.topLeftCorner(n, n) = derivative.Q;
+  wide.P1.topLeftCorner(n, n) = derivative.P1;
+  wide.white = derivative.white;
+  return wide;
+}
+
+/// In innovation form, a' = Phi a + g e with white e of variance S, and for d_i = da/du_i
+///
+///     d_i' = F d_i + M_i a + g_i e,   de_i = -h d_i,   F = Phi (I - k h),  g = Phi k,  M_i = dPhi_i,  g_i = Phi dk_i + M_i k,
+///
+/// the second moments A = E a a', B_i = E d_i a', D_ij = E d_i d_j' are propagated.
+class InformationFilter {
+ public:
+  InformationFilter(const SampleBlock& block, const std::vector<SampleBlock>& derivatives)
+      : block_(block), slopes_(derivatives), P_(block.P1), A_(Matrix::Zero(block.h.size(), block.h.size())) {
+    for (const SampleBlock& slope : slopes_) {
+      dP_.push_back(slope.P1);
+      B_.push_back(A_);
+    }
+    D_.assign(slopes_.size(), std::vector<Matrix>(slopes_.size(), A_));
+    information_.setZero(static_cast<Eigen::Index>(slopes_.size()), static_cast<Eigen::Index>(slopes_.size()));
+  }
+
+  Matrix run(std::uint64_t samples) {
+    for (std::uint64_t i = 0; i < samples; ++i) step();
+    return information_.selfadjointView<Eigen::Lower>();
+  }
+
+ private:
+  void step() {
+    const Vector Ph = P_ * block_.h.transpose();
+    const double S = block_.h.dot(Ph) + block_.white;
+    const Vector k = Ph / S;
+    const Matrix F = block_.Phi - block_.Phi * k * block_.h;
+    const Vector g = block_.Phi * k;
+    const std::size_t p = slopes_.size();
+    std::vector<double> dS(p);
+    std::vector<Vector> dk(p);
+    std::vector<Vector> drive(p);
+    for (std::size_t i = 0; i < p; ++i) {
+      const Vector dPh = dP_[i] * block_.h.transpose();
+      dS[i] = block_.h.dot(dPh) + slopes_[i].white;
+      dk[i] = (dPh - k * dS[i]) / S;
+      drive[i] = block_.Phi * dk[i] + slopes_[i].Phi * k;
+    }
+    for (std::size_t i = 0; i < p; ++i)
+      for (std::size_t j = 0; j <= i; ++j) {
+        const double means = (block_.h * D_[i][j] * block_.h.transpose()).value() / S;
+        information_(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(j)) += means + dS[i] * dS[j] / (2.0 * S * S);
+      }
+    advance_moments(F, g, drive, S);
+    advance_covariances(k, dk, dS, S);
+  }
+
+  void advance_moments(const Matrix& F, const Vector& g, const std::vector<Vector>& drive, double S) {
+    const std::size_t p = slopes_.size();
+    for (std::size_t i = 0; i < p; ++i)
+      for (std::size_t j = 0; j <= i; ++j) {
+        const Matrix& M_i = slopes_[i].Phi;
+        const Matrix& M_j = slopes_[j].Phi;
+        D_[i][j] = F * D_[i][j] * F.transpose() + F * B_[i] * M_j.transpose() + M_i * B_[j].transpose() * F.transpose() +
+                   M_i * A_ * M_j.transpose() + S * drive[i] * drive[j].transpose();
+      }
+    for (std::size_t i = 0; i < p; ++i)
+      B_[i] = F * B_[i] * block_.Phi.transpose() + slopes_[i].Phi * A_ * block_.Phi.transpose() + S * drive[i] * g.transpose();
+    A_ = block_.Phi * A_ * block_.Phi.transpose() + S * g * g.transpose();
+  }
+
+  void advance_covariances(const Vector& k, const std::vector<Vector>& dk, const std::vector<double>& dS, double S) {
+    const Matrix P_upd = P_ - S * k * k.transpose();
+    for (std::size_t i = 0; i < slopes_.size(); ++i) {
+      const Matrix cross = S * dk[i] * k.transpose();
+      const Matrix dP_upd = dP_[i] - dS[i] * k * k.transpose() - cross - cross.transpose();
+      const Matrix moved = slopes_[i].Phi * P_upd * block_.Phi.transpose();
+      dP_[i] = block_.Phi * dP_upd * block_.Phi.transpose() + moved + moved.transpose() + slopes_[i].Q;
+    }
+    P_ = block_.Phi * P_upd * block_.Phi.transpose() + block_.Q;
+    P_ = (0.5 * (P_ + P_.transpose())).eval();
+  }
+
+  SampleBlock block_;
+  std::vector<SampleBlock> slopes_;
+  Matrix P_;
+  std::vector<Matrix> dP_;
+  Matrix A_;
+  std::vector<Matrix> B_;
+  std::vector<std::vector<Matrix>> D_;  ///< j <= i
+  Matrix information_;
+};
+
+}  // namespace
+
+Matrix expected_information(const SumModel& model, const std::vector<double>& u, double interval, std::uint64_t samples) {
+  constexpr double kMost = 20000.0;
+  const auto all = static_cast<double>(samples);
+  const std::size_t block =
+      std::min(slow_block(model, u, interval), std::max<std::size_t>(1, static_cast<std::size_t>(all / kMost)));
+  const double coarse = interval * static_cast<double>(block);
+  const std::uint64_t blocks = samples / block;
+  const SampleBlock wide = with_mean_states(model.block(u, coarse), model.mean(), static_cast<double>(blocks));
+  std::vector<SampleBlock> derivatives;
+  for (const SampleBlock& derivative : model.derivatives(u, coarse)) derivatives.push_back(widened(derivative, wide.h.size()));
+  Matrix information = InformationFilter(wide, derivatives).run(blocks);
+  // Within blocks the scatter is that of white noise alone: log of its variance has information 1/2 per degree of freedom.
+  for (const SumModel::Term& term : model.terms())
+    if (term.states == 0)
+      information(static_cast<Eigen::Index>(term.parameter), static_cast<Eigen::Index>(term.parameter)) +=
+          0.5 * (all - static_cast<double>(blocks));
+  return information;
+}
+
+Matrix cramer_rao(const Matrix& information) {
+  const Eigen::Index p = information.rows();
+  const Vector scale = information.diagonal().cwiseMax(0.0).cwiseSqrt();
+  std::vector<Eigen::Index> seen;
+  for (Eigen::Index i = 0; i < p; ++i)
+    if (scale(i) > 1e-9) seen.push_back(i);
+  Matrix covariance = Matrix::Zero(p, p);
+  covariance.diagonal().setConstant(std::numeric_limits<double>::infinity());
+  if (seen.empty()) return covariance;
+  const Vector unit = scale(seen).cwiseInverse();
+  const Matrix correlation = unit.asDiagonal() * Matrix(information(seen, seen)) * unit.asDiagonal();
+  const Matrix inverse = correlation.ldlt().solve(Matrix::Identity(correlation.rows(), correlation.rows()));
+  covariance(seen, seen) = unit.asDiagonal() * inverse * unit.asDiagonal();
+  return covariance;
+}
+
+double chi_bar_square_survival(double likelihood_ratio) {
+  return likelihood_ratio > 0.0 ? 0.5 * chi2_survival(1.0, likelihood_ratio) : 1.0;
+}
+
+}  // namespace coast::noise

@@ -1,0 +1,122 @@
+#include "polish.hpp"
+
+#include <Eigen/Cholesky>
+#include <cmath>
+
+namespace coast::noise {
+
+namespace {
+
+class Polish {
+ public:
+  Polish(const Likelihood& likelihood, std::vector<Interval> box, Eigen::MatrixXd excess, Fit& fit)
+      : likelihood_(likelihood), box_(std::move(box)), excess_(std::move(excess)), fit_(fit) {}
+
+  void run(double tolerance, int steps) {
+    LikelihoodSlope at = likelihood_.slope(fit_.u);
+    ++fit_.passes;
+    fit_.log_likelihood = at.log_likelihood;
+    fit_.trace.push_back(at.log_likelihood);
+    double damping = 1e-6;
+    for (int step = 0; step < steps; ++step) {
+      const std::vector<bool> held = at_bounds(at.gradient);
+      const Eigen::MatrixXd curvature = curvature_at(at);
+      const Eigen::VectorXd move = proposal(at, curvature, held, damping);
+      const double promised = at.gradient.dot(move) - 0.5 * move.dot(curvature * move);
+      if (promised < tolerance) {
+        fit_.converged = true;
+        return;
+      }
+      const std::vector<double> next = moved(move);
+      LikelihoodSlope there = likelihood_.slope(next);
+      ++fit_.passes;
+      if (there.log_likelihood > at.log_likelihood) {
+        damping = std::max(1e-9, 0.1 * damping);
+        at = std::move(there);
+        fit_.u = next;
+        fit_.log_likelihood = at.log_likelihood;
+        fit_.trace.push_back(at.log_likelihood);
+      } else {
+        damping = std::max(1e-3, 10.0 * damping);
+        if (damping > 1e8) return;
+      }
+    }
+  }
+
+ private:
+  static constexpr double kFarthest = 1.5;  // in a logarithm: beyond it the quadratic model is worth nothing
+
+  [[nodiscard]] std::vector<bool> at_bounds(const Eigen::VectorXd& gradient) const {
+    std::vector<bool> held(fit_.u.size());
+    for (std::size_t i = 0; i < held.size(); ++i) {
+      const double g = gradient(static_cast<Eigen::Index>(i));
+      held[i] = box_[i].lower == box_[i].upper || (fit_.u[i] <= box_[i].lower && g <= 0.0) ||
+                (fit_.u[i] >= box_[i].upper && g >= 0.0);
+    }
+    return held;
+  }
+  /// The information approximates the curvature where the model fits; along flat directions what it leaves out counts.
+  [[nodiscard]] Eigen::MatrixXd curvature_at(const LikelihoodSlope& at) const {
+    if (excess_.size() == 0) return at.information;
+    const Eigen::MatrixXd curvature = at.information + excess_;
+    return curvature.llt().info() == Eigen::Success ? curvature : at.information;
+  }
+  static Eigen::VectorXd proposal(const LikelihoodSlope& at, Eigen::MatrixXd curvature, const std::vector<bool>& held,
+                                  double damping) {
+    Eigen::VectorXd gradient = at.gradient;
+    for (Eigen::Index i = 0; i < gradient.size(); ++i) {
+      curvature(i, i) = (1.0 + damping) * curvature(i, i) + 1e-12;
+      if (!held[static_cast<std::size_t>(i)]) continue;
+      curvature.row(i).setZero();
+      curvature.col(i).setZero();
+      curvature(i, i) = 1.0;
+      gradient(i) = 0.0;
+    }
+    return curvature.ldlt().solve(gradient);
+  }
+  [[nodiscard]] std::vector<double> moved(const Eigen::VectorXd& move) const {
+    const double scale = std::min(1.0, kFarthest / std::max(move.cwiseAbs().maxCoeff(), 1e-300));
+    std::vector<double> next = fit_.u;
+    for (std::size_t i = 0; i < next.size(); ++i)
+      next[i] = std::clamp(next[i] + scale * move(static_cast<Eigen::Index>(i)), box_[i].lower, box_[i].upper);
+    return next;
+  }
+
+  const Likelihood& likelihood_;
+  std::vector<Interval> box_;
+  Eigen::MatrixXd excess_;
+  Fit& fit_;
+};
+
+}  // namespace
+
+std::vector<Interval> box_of(const Likelihood& likelihood, const std::vector<double>& start, const FixedParameters& fixed) {
+  std::vector<Interval> box = likelihood.model().ranges(likelihood.scale());
+  for (std::size_t i = 0; i < box.size(); ++i)
+    if (!fixed.empty() && fixed[i]) box[i] = {start[i], start[i]};
+  return box;
+}
+
+void polish(const Likelihood& likelihood, const std::vector<Interval>& box, const Eigen::MatrixXd& excess, double tolerance,
+            Fit& fit) {
+  constexpr int kSteps = 60;
+  Polish(likelihood, box, excess, fit).run(tolerance, kSteps);
+}
+
+Eigen::MatrixXd excess_curvature(const Likelihood& likelihood, const std::vector<double>& u) {
+  constexpr double kStep = 1e-3;
+  const auto p = static_cast<Eigen::Index>(u.size());
+  Eigen::MatrixXd hessian(p, p);
+  std::vector<double> moved = u;
+  for (Eigen::Index i = 0; i < p; ++i) {
+    const auto at = static_cast<std::size_t>(i);
+    moved[at] = u[at] + kStep;
+    const Eigen::VectorXd above = likelihood.slope(moved).gradient;
+    moved[at] = u[at] - kStep;
+    hessian.col(i) = (above - likelihood.slope(moved).gradient) / (2.0 * kStep);
+    moved[at] = u[at];
+  }
+  return -0.5 * (hessian + hessian.transpose()) - likelihood.slope(u).information;
+}
+
+}  // namespace coast::noise

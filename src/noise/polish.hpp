@@ -1,0 +1,22 @@
+#pragma once
+// The last steps to an optimum of the likelihood. Private to the room.
+
+#include "coast/noise/estimators.hpp"
+
+namespace coast::noise {
+
+/// Ranges of the parameters; those that are fixed have theirs at the start.
+[[nodiscard]] std::vector<Interval> box_of(const Likelihood& likelihood, const std::vector<double>& start,
+                                           const FixedParameters& fixed);
+
+/// Gauss-Newton with Levenberg's damping, within the box, until the quadratic model promises less than `tolerance` of
+/// log-likelihood.
+/// @param excess  of the curvature over the information, known from block means; empty: taken as none
+/// @param fit     start in, optimum out; trace and passes are added to
+void polish(const Likelihood& likelihood, const std::vector<Interval>& box, const Eigen::MatrixXd& excess, double tolerance,
+            Fit& fit);
+
+/// Minus the Hessian of the log-likelihood by central differences of its gradient, less the information.
+[[nodiscard]] Eigen::MatrixXd excess_curvature(const Likelihood& likelihood, const std::vector<double>& u);
+
+}  // namespace coast::noise
