@@ -32,7 +32,9 @@ FilterState ForwardFilter::initial_state(const record::NavState& nav, const Eige
                                          const Eigen::Vector3d& sd_velocity_n, const Eigen::Vector3d& sd_attitude_n) const {
   FilterState state;
   state.nav = nav;
-  state.x = Eigen::VectorXd::Zero(layout_.size());
+  const std::vector<record::ImuSample>& samples = mission_.imu.samples;
+  const geo::GpsTime begin = samples.empty() ? nav.t : samples.front().t - samples.front().dt;
+  state.x = layout_.mean(nav.t - mission_.first_epoch.value_or(begin));
   state.P = layout_.initial_covariance();
   const Eigen::Matrix3d C_n_e = geo::C_n_e(geo::geodetic_from_ecef(nav.r_eb_e));
   const auto rotated = [&](const Eigen::Vector3d& sd) {

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <Eigen/Eigenvalues>
 #include <cmath>
 #include <limits>
 
@@ -27,13 +28,14 @@ std::optional<Eigen::Vector3d> signal_axis(noise::Input input, int axis, const E
   return std::nullopt;
 }
 
-// A process whose transition over a second is 1 is a constant or a walk; else 1/beta follows from the diagonal.
+// How soon states decay or turn: 1/beta of a Gauss-Markov process, 1/omega of an oscillation; infinity for constants, walks and
+// ramps, whose transitions have no eigenvalue but 1.
 double correlation_time(const noise::Process& process) {
   Eigen::MatrixXd Phi = Eigen::MatrixXd::Zero(process.states(), process.states());
-  constexpr double kInterval = 1e-3;
-  process.transition(kInterval, Phi);
-  const double smallest = Phi.diagonal().cwiseAbs().minCoeff();
-  return smallest < 1.0 ? kInterval / (1.0 - smallest) : std::numeric_limits<double>::infinity();
+  const double interval = std::max(1e-3, process.sample_interval().value_or(0.0));
+  process.transition(interval, Phi);
+  const double farthest = process.states() == 1 ? 1.0 - Phi(0, 0) : (Phi.eigenvalues().array() - 1.0).abs().maxCoeff();
+  return farthest > 0.0 ? interval / farthest : std::numeric_limits<double>::infinity();
 }
 
 }  // namespace
@@ -97,6 +99,13 @@ Eigen::MatrixXd StateLayout::initial_covariance() const {
   Eigen::MatrixXd P = Eigen::MatrixXd::Zero(size_, size_);
   for_each_block([&](const Block& b) { b.process->initial_covariance(P.block(b.offset, b.offset, b.size, b.size)); });
   return P;
+}
+
+Eigen::VectorXd StateLayout::mean(double elapsed) const {
+  Eigen::VectorXd x = Eigen::VectorXd::Zero(size_);
+  for_each_block([&](const Block& b) { b.process->initial_mean(x.segment(b.offset, b.size)); });
+  if (elapsed > 0.0) BlockTransitions(*this).over(elapsed).apply(x.tail(size_ - kNav));
+  return x;
 }
 
 BlockTransitions::BlockTransitions(const StateLayout& layout)

@@ -10,12 +10,13 @@ namespace {
 
 /// A curve to be matched: variances at averaging times, with the standard deviation of each.
 struct Target {
+  double interval = 1.0;  ///< s between samples
   Eigen::VectorXd tau;
   Eigen::VectorXd variance;
   Eigen::VectorXd sd;
 };
 
-Target target_of(const AllanCurve& curve, CurveFit kind) {
+Target target_of(const AllanCurve& curve, double interval, CurveFit kind) {
   std::vector<const AllanPoint*> points;
   std::uint64_t next = 0;
   for (const AllanPoint& point : curve) {
@@ -24,7 +25,7 @@ Target target_of(const AllanCurve& curve, CurveFit kind) {
     next = 2 * point.factor;
   }
   const auto n = static_cast<Eigen::Index>(points.size());
-  Target target{Eigen::VectorXd(n), Eigen::VectorXd(n), Eigen::VectorXd(n)};
+  Target target{interval, Eigen::VectorXd(n), Eigen::VectorXd(n), Eigen::VectorXd(n)};
   for (Eigen::Index i = 0; i < n; ++i) {
     const AllanPoint& point = *points[static_cast<std::size_t>(i)];
     target.tau(i) = point.tau;
@@ -47,16 +48,12 @@ Roles roles_of(const SumModel& model) {
   return roles;
 }
 
-double curve_at(const SumModel& model, const std::vector<double>& u, double tau) {
-  return allan_variance(model.processes(u, Sensor::kGyro), tau);
-}
-
 /// Curves of the terms with unit variance, one column each.
 Eigen::MatrixXd unit_curves(const SumModel& model, const Roles& roles, const std::vector<double>& rates, const Target& target) {
   Eigen::MatrixXd columns(target.tau.size(), static_cast<Eigen::Index>(roles.scales.size()));
   std::vector<double> u = rates;
   for (const std::size_t i : roles.scales) u[i] = 0.0;
-  const std::vector<ProcessPtr> processes = model.processes(u, Sensor::kGyro);
+  const std::vector<ProcessPtr> processes = model.processes(u, {Sensor::kGyro, target.interval});
   for (Eigen::Index j = 0; j < columns.cols(); ++j)
     for (Eigen::Index i = 0; i < columns.rows(); ++i)
       columns(i, j) = processes[static_cast<std::size_t>(j)]->allan_variance(target.tau(i)).value_or(0.0);
@@ -144,14 +141,15 @@ class RateGrid {
 }  // namespace
 
 std::vector<double> fit_curve(const AllanCurve& curve, const SumModel& model, const SignalScale& scale, CurveFit kind) {
-  const Target target = target_of(curve, kind);
+  const Target target = target_of(curve, scale.interval, kind);
   const std::vector<Interval> ranges = model.ranges(scale);
   const Roles roles = roles_of(model);
   const std::vector<double> start = RateGrid(model, roles, ranges, target).best();
   const auto cost = [&](const std::vector<double>& u) {
     double sum = 0.0;
+    const std::vector<ProcessPtr> processes = model.processes(u, {Sensor::kGyro, target.interval});
     for (Eigen::Index i = 0; i < target.tau.size(); ++i) {
-      const double modelled = curve_at(model, u, target.tau(i));
+      const double modelled = allan_variance(processes, target.tau(i));
       const double miss =
           kind == CurveFit::kAllan ? std::log(modelled / target.variance(i)) : (modelled - target.variance(i)) / target.sd(i);
       sum += 0.5 * miss * miss;

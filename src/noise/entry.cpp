@@ -7,8 +7,14 @@ namespace coast::noise {
 double value_with_unit(const config::Node& entry, std::string_view key, const SensorDimension& dimension,
                        const EntryContext& context) {
   const config::Node value = entry.at(key);
-  const config::Node unit = entry.at("unit");
   if (!(value.number() >= 0.0)) throw value.error(value.text(), "a value of zero or more");
+  return signed_value_with_unit(entry, key, dimension, context);
+}
+
+double signed_value_with_unit(const config::Node& entry, std::string_view key, const SensorDimension& dimension,
+                              const EntryContext& context) {
+  const config::Node value = entry.at(key);
+  const config::Node unit = entry.at("unit");
   try {
     return geo::to_si(value.number(), unit.text(), dimension.of(context.sensor));
   } catch (const std::invalid_argument& wrong_unit) {

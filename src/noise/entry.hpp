@@ -18,12 +18,17 @@ inline constexpr SensorDimension kSignal{geo::Dimension::kAngularRate, geo::Dime
 inline constexpr SensorDimension kSignalNoise{geo::Dimension::kAngularRateNoise, geo::Dimension::kSpecificForceNoise};
 inline constexpr SensorDimension kSignalVariance{geo::Dimension::kAngularRateVariance, geo::Dimension::kSpecificForceVariance};
 inline constexpr SensorDimension kSignalWalk{geo::Dimension::kAngularRateWalk, geo::Dimension::kSpecificForceWalk};
+inline constexpr SensorDimension kSignalRamp{geo::Dimension::kAngularRateRamp, geo::Dimension::kSpecificForceRamp};
+inline constexpr SensorDimension kSignalIntegral{geo::Dimension::kAngle, geo::Dimension::kVelocity};
 inline constexpr SensorDimension kDimensionless{geo::Dimension::kRatio, geo::Dimension::kRatio};
 inline constexpr SensorDimension kSmallAngle{geo::Dimension::kAngle, geo::Dimension::kAngle};
 
 /// Reads `key` with the entry's `unit`.  @return SI value, >= 0
 [[nodiscard]] double value_with_unit(const config::Node& entry, std::string_view key, const SensorDimension& dimension,
                                      const EntryContext& context);
+/// The same for a value that may be negative.
+[[nodiscard]] double signed_value_with_unit(const config::Node& entry, std::string_view key, const SensorDimension& dimension,
+                                            const EntryContext& context);
 /// The SI unit's name of a dimension, for writing an entry again.
 [[nodiscard]] std::string_view si_unit(geo::Dimension dimension);
 

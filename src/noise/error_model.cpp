@@ -77,9 +77,11 @@ double ImuErrorModel::bias_sd(Sensor sensor, int axis) const {
 
 ImuErrorModel ImuErrorModel::with_white_noise_scaled(Sensor sensor, double factor) const {
   ImuErrorModel scaled = *this;
+  if (factor == 1.0) return scaled;  // what rounds its samples goes on doing so
   for (auto& axis : sensor == Sensor::kGyro ? scaled.gyro_ : scaled.accel_)
     for (ProcessPtr& process : axis)
-      if (process->states() == 0) process = make_white_noise(std::sqrt(process->white_density().value) * factor, sensor);
+      if (process->white_density().value > 0.0)
+        process = make_white_noise(std::sqrt(process->white_density().value) * factor, sensor);
   return scaled;
 }
 

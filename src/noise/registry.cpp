@@ -9,11 +9,14 @@ namespace coast::noise {
 const std::vector<Registration>& registry() {
   static const std::vector<Registration> table = {
       white_noise(), random_constant(), random_walk(), gauss_markov(), scale_factor(), misalignment(),
+      drift(),       rate_ramp(),       flicker(),     quantisation(), ar(),
   };
   return table;
 }
 
 const Estimable& estimable(std::string_view name) {
+  // "ar(3)": autoregressions have an order.
+  if (name.size() == 5 && name.starts_with("ar(") && name.back() == ')') return estimable_ar(name[3] - '0');
   const auto found = std::ranges::find(registry(), name, &Registration::name);
   if (found == registry().end() || found->estimable == nullptr)
     throw std::invalid_argument("no process '" + std::string(name) + "' that can be estimated");

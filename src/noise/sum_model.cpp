@@ -102,9 +102,9 @@ std::vector<SampleBlock> SumModel::derivatives(const std::vector<double>& u, dou
   return all;
 }
 
-std::vector<ProcessPtr> SumModel::processes(const std::vector<double>& u, Sensor sensor) const {
+std::vector<ProcessPtr> SumModel::processes(const std::vector<double>& u, const Sampling& sampling) const {
   std::vector<ProcessPtr> all;
-  for (const Term& term : terms_) all.push_back(term.process->process(own(u, term), sensor));
+  for (const Term& term : terms_) all.push_back(term.process->process(own(u, term), sampling));
   return all;
 }
 

@@ -3,12 +3,16 @@
 #include <Eigen/Eigenvalues>
 #include <array>
 #include <cmath>
+#include <optional>
+#include <random>
 #include <vector>
 
 #include "random.hpp"
 
 namespace coast::simulate {
 namespace {
+
+constexpr double kSameInstant = 1.5e-9;  // s; epochs are rounded to a nanosecond, and intervals that differ by no more are one
 
 // Square root L of a positive semidefinite matrix, L L' = P: driving noise may be singular, so no Cholesky.
 Eigen::MatrixXd square_root(const Eigen::MatrixXd& P) {
@@ -31,7 +35,9 @@ struct Realisation::State {
     Eigen::MatrixXd P = Eigen::MatrixXd::Zero(n, n);
     process->initial_covariance(P);
     draw();
-    x = square_root(P) * w;
+    process->initial_mean(x);
+    x += square_root(P) * w;
+    held = process->sample_interval();
   }
 
   void draw() {
@@ -39,8 +45,7 @@ struct Realisation::State {
   }
 
   void discretise(double dt) {
-    // Epochs are rounded to a nanosecond; intervals that differ by no more share their step.
-    if (std::abs(dt - step) <= 1.5e-9) return;
+    if (std::abs(dt - step) <= kSameInstant) return;
     step = dt;
     Eigen::MatrixXd Q_d = Eigen::MatrixXd::Zero(x.size(), x.size());
     Phi.setZero();
@@ -49,20 +54,42 @@ struct Realisation::State {
     L = square_root(Q_d);
   }
 
-  double mean_of_states(double dt) {
-    if (x.size() == 0) return 0.0;
+  void advance(double dt) {
     discretise(dt);
     draw();
     before = x;
     x.noalias() = Phi * before;
     x.noalias() += L * w;
+  }
+
+  double mean_of_states(double dt) {
+    if (x.size() == 0) return 0.0;
+    if (held) return mean_of_held(dt);
+    advance(dt);
     return 0.5 * (h.dot(before) + h.dot(x));
+  }
+
+  // A series at its own rate: each value counts for as long as it is held within the interval.
+  double mean_of_held(double dt) {
+    double integral = 0.0;
+    for (double left = dt; left > kSameInstant;) {
+      const double part = std::min(left, *held - held_for);
+      integral += part * h.dot(x);
+      left -= part;
+      held_for += part;
+      if (*held - held_for > kSameInstant) continue;
+      advance(*held);
+      held_for = 0.0;
+    }
+    return integral / dt;
   }
 
   noise::ProcessPtr process;
   Normal normal;
   double density = 0.0;
   double step = 0.0;
+  std::optional<double> held;  // s, interval of a series
+  double held_for = 0.0;       // s, of the present value
   Eigen::VectorXd x, w, before;
   Eigen::RowVectorXd h;
   Eigen::MatrixXd Phi, L;
@@ -108,6 +135,28 @@ void add_errors(record::ImuRecording& recording, const record::ImuRecording& tru
   }
 }
 
+// The residue that is carried from sample to sample keeps the integral within half a step of what it was, however long the
+// recording. Where in its step the integral begins is drawn.
+void round_integral(record::ImuRecording& recording, Eigen::Vector3d record::ImuSample::*increment, double step,
+                    Eigen::Index axis, std::uint64_t seed) {
+  std::mt19937_64 engine(seed);
+  double residue = std::uniform_real_distribution<double>(-0.5 * step, 0.5 * step)(engine);
+  for (record::ImuSample& sample : recording.samples) {
+    double& value = (sample.*increment)[axis];
+    const double whole = step * std::round((residue + value) / step);
+    residue += value - whole;
+    value = whole;
+  }
+}
+
+void round_samples(record::ImuRecording& recording, Eigen::Vector3d record::ImuSample::*increment, double step,
+                   Eigen::Index axis) {
+  for (record::ImuSample& sample : recording.samples) {
+    double& value = (sample.*increment)[axis];
+    value = step * std::round(value / (step * sample.dt)) * sample.dt;
+  }
+}
+
 }  // namespace
 
 record::ImuRecording with_errors(const record::ImuRecording& truth, const noise::ImuErrorModel& model, std::uint64_t seed) {
@@ -117,8 +166,18 @@ record::ImuRecording with_errors(const record::ImuRecording& truth, const noise:
     const auto increment = gyro ? &record::ImuSample::dtheta : &record::ImuSample::dv;
     for (std::size_t axis = 0; axis < 3; ++axis) {
       const std::vector<noise::ProcessPtr>& processes = model.axes(sensor)[axis];
+      const auto stream = [&](std::size_t p) { return stream_seed(seed, {gyro ? 1u : 2u, axis, p}); };
       for (std::size_t p = 0; p < processes.size(); ++p)
-        add_errors(measured, truth, increment, processes[p], axis, stream_seed(seed, {gyro ? 1u : 2u, axis, p}));
+        if (!processes[p]->rounding()) add_errors(measured, truth, increment, processes[p], axis, stream(p));
+      for (std::size_t p = 0; p < processes.size(); ++p) {
+        const auto rounding = processes[p]->rounding();
+        if (!rounding) continue;
+        const auto component = static_cast<Eigen::Index>(axis);
+        if (rounding->of == noise::Rounding::Of::kIntegral)
+          round_integral(measured, increment, rounding->step, component, stream(p));
+        else
+          round_samples(measured, increment, rounding->step, component);
+      }
     }
   }
   return measured;

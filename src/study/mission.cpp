@@ -44,11 +44,14 @@ double largest(const noise::ImuErrorModel& model, noise::Sensor sensor) {
   return value;
 }
 
-// A bias known in body axes becomes the state of the additive process with the largest prior on each axis.
-void set_gyro_bias(const estimate::StateLayout& layout, const Eigen::Vector3d& bias_b, estimate::FilterState& state) {
+// A bias known in body axes becomes the state of the additive process with the largest prior on each axis, less what other
+// states are known to be.
+void set_gyro_bias(const estimate::StateLayout& layout, Eigen::Vector3d bias_b, estimate::FilterState& state) {
   std::array<const estimate::StateLayout::SensorBlock*, 3> widest{};
   for (const auto& block : layout.sensors()) {
-    if (block.sensor != noise::Sensor::kGyro || block.signal_b || block.size != 1) continue;
+    if (block.sensor != noise::Sensor::kGyro || block.signal_b) continue;
+    bias_b -= block.output.dot(state.x.segment(block.offset, block.size)) * block.response_b;
+    if (block.size != 1) continue;
     Eigen::Index axis = 0;
     block.response_b.cwiseAbs().maxCoeff(&axis);
     auto& slot = widest[static_cast<std::size_t>(axis)];
@@ -130,6 +133,7 @@ void PreparedMission::find_standstill() {
   mission_->C_s_b = setup_.C_s_b;
   mission_->lever_arm_b = setup_.lever_arm_b;
   mission_->time_offset_s = setup_.time_offset_s;
+  mission_->first_epoch = imu_.samples.front().t - imu_.samples.front().dt;
   for (const ins::StaticPeriod& period : ins::find_static_periods(imu_, &gnss_)) {
     const record::ImuSample& first = imu_.samples[period.first];
     mission_->standstill.push_back({first.t - first.dt, imu_.samples[period.last].t});
@@ -222,7 +226,8 @@ estimate::NoiseFit PreparedMission::fit(const estimate::NoiseFitChoice& choice, 
                                  mission_->lever_arm_b,
                                  mission_->time_offset_s,
                                  mission_->standstill,
-                                 mission_->earth_rate};
+                                 mission_->earth_rate,
+                                 mission_->first_epoch};
   return estimate::fit_noise(
       window, setup_.model, setup_.filter, choice, from,
       [this](const estimate::ForwardFilter& filter) { return start_state(filter); }, stage(progress, "fitting the noise"));

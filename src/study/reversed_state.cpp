@@ -7,8 +7,15 @@ namespace coast::study {
 ReversedRun::ReversedRun(const estimate::Mission& forward, const record::ImuRecording& imu, const record::GnssRecording& gnss,
                          geo::GpsTime mirror, AlreadyReversed)
     : mirror_(mirror),
-      mission_{
-          imu, gnss, forward.increments, forward.C_s_b, forward.lever_arm_b, -forward.time_offset_s, {}, -forward.earth_rate} {
+      mission_{imu,
+               gnss,
+               forward.increments,
+               forward.C_s_b,
+               forward.lever_arm_b,
+               -forward.time_offset_s,
+               {},
+               -forward.earth_rate,
+               forward.first_epoch} {
   for (const estimate::TimeSpan& span : forward.standstill)
     mission_.standstill.push_back({ins::mirrored(span.to, mirror), ins::mirrored(span.from, mirror)});
   std::ranges::reverse(mission_.standstill);
@@ -17,8 +24,11 @@ ReversedRun::ReversedRun(const estimate::Mission& forward, const record::ImuReco
 estimate::FilterState ReversedRun::mirrored(const estimate::FilterState& state, const estimate::StateLayout& layout) const {
   Eigen::VectorXd sign = Eigen::VectorXd::Ones(layout.size());
   sign.segment<3>(estimate::kVel).setConstant(-1.0);
-  for (const auto& block : layout.sensors())
-    if (block.sensor == noise::Sensor::kGyro && !block.signal_b) sign.segment(block.offset, block.size).setConstant(-1.0);
+  for (const auto& block : layout.sensors()) {
+    auto own = sign.segment(block.offset, block.size);
+    block.process->reversal(own);
+    if (block.sensor == noise::Sensor::kGyro && !block.signal_b) own = -own;
+  }
   if (layout.time_offset()) sign(*layout.time_offset()) = -1.0;
   estimate::FilterState result;
   result.nav = ins::reversed(state.nav, mirror_);

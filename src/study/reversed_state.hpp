@@ -20,7 +20,8 @@ class ReversedRun {
               geo::GpsTime mirror, AlreadyReversed);
 
   [[nodiscard]] const estimate::Mission& mission() const { return mission_; }
-  /// Into reversed time and back (its own inverse): velocity, additive gyro errors and time offset change sign.
+  /// Into reversed time and back (its own inverse): velocity, additive gyro errors, rates of change and
+  /// time offset change sign.
   [[nodiscard]] estimate::FilterState mirrored(const estimate::FilterState& state, const estimate::StateLayout& layout) const;
 
   /// The same fixes withheld.

@@ -91,6 +91,10 @@ TEST(Schemas, ErrorModelEntriesNeedAUnitThatFits) {
   EXPECT_TRUE(refused(name, with_gyro_entry({{"process", "white_noise"}, {"sigma", 0.1}, {"unit", "deg/sqrt(h)"}})));
   EXPECT_TRUE(refused(name, with_gyro_entry({{"process", "pink"}, {"density", 0.1}, {"unit", "deg/sqrt(h)"}})));
   EXPECT_TRUE(refused(name, with_gyro_entry({{"process", "gauss_markov"}, {"sigma", 0.1}, {"unit", "deg/h"}})));
+  EXPECT_FALSE(refused(name, with_gyro_entry({{"process", "drift"}, {"slope", -0.1}, {"unit", "deg/h/h"}})));
+  EXPECT_TRUE(refused(name, with_gyro_entry({{"process", "rate_ramp"}, {"coefficient", -0.1}, {"unit", "deg/h/h"}})));
+  EXPECT_TRUE(refused(name, with_gyro_entry({{"process", "quantisation"}, {"step", 1}, {"unit", "m/s"}})));
+  EXPECT_TRUE(refused(name, with_gyro_entry({{"process", "ar"}, {"coefficients", {0.5}}, {"unit", "deg/h"}, {"rate_hz", 1}})));
 }
 
 // Collects the units that a schema allows in the entries of one sensor and one key.
@@ -129,6 +133,22 @@ TEST(Schemas, UnitsAreThoseOfTheTable) {
   expect("accel", "gauss_markov", "sigma", Dimension::kSpecificForce);
   expect("accel", "scale_factor", "sigma", Dimension::kRatio);
   expect("gyro", "misalignment", "sigma", Dimension::kAngle);
+  expect("gyro", "drift", "slope", Dimension::kAngularRateRamp);
+  expect("accel", "drift", "slope", Dimension::kSpecificForceRamp);
+  expect("gyro", "rate_ramp", "coefficient", Dimension::kAngularRateRamp);
+  expect("accel", "rate_ramp", "coefficient", Dimension::kSpecificForceRamp);
+  expect("gyro", "flicker", "coefficient", Dimension::kAngularRate);
+  expect("accel", "flicker", "coefficient", Dimension::kSpecificForce);
+  expect("gyro", "ar", "innovation_sigma", Dimension::kAngularRate);
+  expect("accel", "ar", "innovation_sigma", Dimension::kSpecificForce);
+  const auto either = [](std::set<std::string> a, const std::set<std::string>& b) {
+    a.insert(b.begin(), b.end());
+    return a;
+  };
+  EXPECT_EQ(units_of(schema, "gyro", "quantisation", "step"),
+            either(table_of(Dimension::kAngle), table_of(Dimension::kAngularRate)));
+  EXPECT_EQ(units_of(schema, "accel", "quantisation", "step"),
+            either(table_of(Dimension::kVelocity), table_of(Dimension::kSpecificForce)));
 }
 
 }  // namespace

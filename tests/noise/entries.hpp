@@ -27,15 +27,17 @@ inline noise::ImuErrorModel model_of(const std::string& text) {
 struct Block {
   Eigen::MatrixXd Phi, Q_d, P;
   Eigen::RowVectorXd h;
+  Eigen::VectorXd mean;
 };
 inline Block block_of(const noise::Process& process, double dt) {
   const int n = process.states();
   Block block{Eigen::MatrixXd::Zero(n, n), Eigen::MatrixXd::Zero(n, n), Eigen::MatrixXd::Zero(n, n),
-              Eigen::RowVectorXd::Zero(n)};
+              Eigen::RowVectorXd::Zero(n), Eigen::VectorXd::Zero(n)};
   process.transition(dt, block.Phi);
   process.driving_noise(dt, block.Q_d);
   process.initial_covariance(block.P);
   process.output(block.h);
+  process.initial_mean(block.mean);
   return block;
 }
 

@@ -1,5 +1,6 @@
 #include "coast/noise/error_model.hpp"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -76,6 +77,22 @@ TEST(ErrorModel, WrittenModelIsReadAsTheSame) {
       EXPECT_NEAR(again.white_density(sensor, axis).value, model.white_density(sensor, axis).value,
                   1e-15 * model.white_density(sensor, axis).value);
     }
+}
+
+TEST(ErrorModel, EveryRegisteredProcessSurvivesWriting) {
+  std::string text = "schema: coast.imu_error_model/1\nrate_hz: 200\n";
+  for (const Sensor sensor : {Sensor::kGyro, Sensor::kAccel}) {
+    text += sensor == Sensor::kGyro ? "gyro:\n  all:\n" : "accel:\n  all:\n";
+    for (const noise::Registration& r : noise::registry())
+      text += fmt::format("    - {}\n", sensor == Sensor::kGyro ? r.gyro_example : r.accel_example);
+    text += sensor == Sensor::kGyro ? "    - {process: quantisation, step: 0.01, unit: deg/s}\n"
+                                    : "    - {process: quantisation, step: 1, unit: mg}\n";
+  }
+  const auto model = model_of(text);
+  EXPECT_EQ(model.axes(Sensor::kGyro)[2].size(), noise::registry().size() + 2);  // two angles of the misalignment
+  const auto again = model_of(model.yaml());
+  EXPECT_EQ(again.yaml(), model.yaml());
+  EXPECT_EQ(again.axes(Sensor::kAccel)[1].size(), model.axes(Sensor::kAccel)[1].size());
 }
 
 struct Spoiled {

@@ -25,6 +25,9 @@ std::vector<Case> cases() {
       {"fast_and_at_rest", {"white_noise", "gauss_markov"}, {0.004, 20.0, 0.25}, 0.01, Mean::kLevel},
       {"two", {"white_noise", "gauss_markov", "gauss_markov"}, {0.02, 0.03, 0.3, 2.0, 0.1}, 0.5, Mean::kLevelAndDrift},
       {"walk", {"white_noise", "gauss_markov", "random_walk"}, {0.09, 0.2, 0.25, 1e-3}, 1.0, Mean::kLevel},
+      {"rounded", {"white_noise", "gauss_markov", "quantisation"}, {0.02, 0.1, 0.25, 0.05}, 1.0, Mean::kLevel},
+      {"oscillating", {"white_noise", "ar", "random_walk"}, {0.09, 0.9, -0.7, 0.1, 1e-3}, 1.0, Mean::kLevelAndDrift},
+      {"bias_instability", {"white_noise", "flicker"}, {0.5, 0.3}, 3.0, Mean::kLevel},
       {"known_mean", {"white_noise", "gauss_markov"}, {0.3, 0.05, 0.1}, 2.0, Mean::kZero},
   };
 }

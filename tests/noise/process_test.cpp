@@ -88,6 +88,13 @@ TEST_P(EveryProcess, EntryWrittenInSiMakesTheSameProcess) {
     test::expect_near_matrix(a.Phi, b.Phi, 1e-15, "Phi");
     test::expect_near_matrix(a.Q_d, b.Q_d, 1e-14, "Q_d");
     test::expect_near_matrix(a.P, b.P, 1e-15, "P");
+    test::expect_near_matrix(a.mean, b.mean, 1e-15, "mean");
+    EXPECT_EQ(after[i]->sample_interval(), before[i]->sample_interval());
+    const auto rounded = before[i]->rounding(), again = after[i]->rounding();
+    ASSERT_EQ(again.has_value(), rounded.has_value());
+    if (!rounded) continue;
+    EXPECT_EQ(again->of, rounded->of);
+    EXPECT_NEAR(again->step, rounded->step, 1e-15 * rounded->step);
   }
 }
 
@@ -114,13 +121,14 @@ struct Quadrature {
   }
 };
 
-/// The variance of sum_i weights[i] * (integral of the error over the i-th interval of length tau), from the state-space block:
-/// the double integral of h Phi(t - s) P(s) h', smooth in each cell off the diagonal and in each triangle on it.
-double variance_by_propagation(const noise::Process& process, double tau, const std::vector<double>& weights) {
+/// The mean square of sum_i weights[i] * (integral of the error over the i-th interval of length tau), from the state-space
+/// block: the double integral of h Phi(t - s) P(s) h', smooth in each cell off the diagonal and in each triangle on it.
+double mean_square_in_continuous_time(const noise::Process& process, double tau, const std::vector<double>& weights) {
   const Quadrature gauss;
   const auto covariance = [&](double s, double t) {  // s < t
     const auto from_start = block_of(process, s), onwards = block_of(process, t - s);
-    return (onwards.h * onwards.Phi * (from_start.Phi * from_start.P * from_start.Phi.transpose() + from_start.Q_d) *
+    const Eigen::MatrixXd square = from_start.P + from_start.mean * from_start.mean.transpose();
+    return (onwards.h * onwards.Phi * (from_start.Phi * square * from_start.Phi.transpose() + from_start.Q_d) *
             onwards.h.transpose())(0, 0);
   };
   double sum = 0.0;
@@ -137,19 +145,81 @@ double variance_by_propagation(const noise::Process& process, double tau, const 
   return sum;
 }
 
+bool is_stationary(const noise::Process& process) {
+  const auto block = block_of(process, 1.0);
+  return block.mean.isZero(0.0) &&
+         (block.Phi * block.P * block.Phi.transpose() + block.Q_d - block.P).norm() <= 1e-14 * block.P.norm();
+}
+
+/// The same where only the lag counts and time constants are spread over decades: one integral, in panels that shrink towards
+/// a lag of zero.
+double mean_square_by_lag(const noise::Process& process, double tau, const std::vector<double>& weights) {
+  const Quadrature gauss;
+  const auto pairs = [&](std::size_t lag) {
+    double sum = 0.0;
+    for (std::size_t i = 0; i + lag < weights.size(); ++i) sum += weights[i] * weights[i + lag];
+    return sum;
+  };
+  double sum = 0.0;
+  for (std::size_t j = 0; j < weights.size(); ++j)
+    for (double from = 0.0, to = 1e-6; from < 1.0; from = to, to = std::min(1.0, 4.0 * to))
+      for (std::size_t p = 0; p < gauss.at.size(); ++p) {
+        const double u = from + (to - from) * gauss.at[p];
+        const auto block = block_of(process, tau * (static_cast<double>(j) + u));
+        sum += 2.0 * tau * tau * (to - from) * gauss.weight[p] * ((1.0 - u) * pairs(j) + u * pairs(j + 1)) *
+               (block.h * block.Phi * block.P * block.h.transpose())(0, 0);
+      }
+  return sum;
+}
+
+/// The same of a stationary series that is held from sample to sample, tau a whole number of them: the sum over all pairs, by
+/// lag.
+double mean_square_of_series(const noise::Process& process, double tau, const std::vector<double>& weights) {
+  const double interval = *process.sample_interval();
+  const auto m = static_cast<std::size_t>(std::lround(tau / interval));
+  const auto pairs = [&](std::size_t lag) {  // of intervals that far apart
+    double sum = 0.0;
+    for (std::size_t i = 0; i + lag < weights.size(); ++i) sum += weights[i] * weights[i + lag];
+    return sum;
+  };
+  double sum = 0.0;
+  for (std::size_t lag = 0; lag < weights.size() * m; ++lag) {
+    const auto far = static_cast<double>(lag % m), near = static_cast<double>(m) - far;
+    const auto block = block_of(process, std::max(1e-300, interval * static_cast<double>(lag)));
+    sum += (lag == 0 ? 1.0 : 2.0) * (near * pairs(lag / m) + far * pairs(lag / m + 1)) *
+           (block.h * block.Phi * block.P * block.h.transpose())(0, 0);
+  }
+  return interval * interval * sum;
+}
+
+/// And with what has no state: the errors of a rounded integral are independent at both ends of each interval.
+double mean_square_by_propagation(const noise::Process& process, double tau, const std::vector<double>& weights) {
+  if (process.sample_interval()) return mean_square_of_series(process, tau, weights);
+  if (process.states() > 1 && is_stationary(process)) return mean_square_by_lag(process, tau, weights);
+  double sum = mean_square_in_continuous_time(process, tau, weights);
+  const auto rounding = process.rounding();
+  if (!rounding || rounding->of != noise::Rounding::Of::kIntegral) return sum;
+  for (std::size_t i = 0; i <= weights.size(); ++i) {
+    const double change = (i > 0 ? weights[i - 1] : 0.0) - (i < weights.size() ? weights[i] : 0.0);
+    sum += change * change * rounding->step * rounding->step / 12.0;
+  }
+  return sum;
+}
+
 TEST_P(EveryProcess, ClosedFormVariancesAreThoseOfTheBlock) {
   for (const auto& process : processes_of(GetParam().text(), GetParam().sensor)) {
-    for (const double tau : {0.01, 1.0, 700.0, 1400.0, 9000.0}) {
+    for (const double any : {0.01, 1.0, 700.0, 1400.0, 9000.0}) {
+      const double tau = std::max(any, process->sample_interval().value_or(0.0));
       const auto allan = process->allan_variance(tau), hadamard = process->hadamard_variance(tau);
       EXPECT_EQ(allan.has_value(), process->input() == noise::Input::kOne);
       EXPECT_EQ(hadamard.has_value(), process->input() == noise::Input::kOne);
       if (!allan || !hadamard) continue;
-      // A bias is differenced away: what rounding leaves of its variance, and of each term of the sums.
+      // A bias or a ramp is differenced away: what rounding leaves of its variance, and of each term of the sums.
       const double rounding =
-          process->states() == 0 ? 0.0 : 1e-14 * variance_by_propagation(*process, tau, {1.0}) / (tau * tau);
-      const double by_block = variance_by_propagation(*process, tau, {1.0, -1.0}) / (2.0 * tau * tau);
+          process->states() == 0 ? 0.0 : 1e-15 * mean_square_by_propagation(*process, tau, {1.0, 2.0, 1.0}) / (tau * tau);
+      const double by_block = mean_square_by_propagation(*process, tau, {1.0, -1.0}) / (2.0 * tau * tau);
       EXPECT_NEAR(*allan, by_block, 1e-11 * by_block + rounding) << tau;
-      const double third = variance_by_propagation(*process, tau, {1.0, -2.0, 1.0}) / (6.0 * tau * tau);
+      const double third = mean_square_by_propagation(*process, tau, {1.0, -2.0, 1.0}) / (6.0 * tau * tau);
       EXPECT_NEAR(*hadamard, third, 1e-11 * third + rounding) << tau;
     }
   }
@@ -158,12 +228,16 @@ TEST_P(EveryProcess, ClosedFormVariancesAreThoseOfTheBlock) {
 // A spoiled entry is an error that names the line of what is wrong (the entry stands alone on line 1).
 TEST_P(EveryProcess, SpoiledEntriesAreRefusedWithTheirLine) {
   const std::string good = GetParam().text();
-  const std::regex unit(", unit: [^,}]+"), value("(sigma|density): [^,}]+");
-  for (const std::string& spoiled :
-       {std::regex_replace(good, unit, ""), std::regex_replace(good, unit, ", unit: K/h"),
-        std::regex_replace(good, unit, ", unit: " + std::string("m/s")), std::regex_replace(good, value, "$1: -1"),
-        std::regex_replace(good, value, "$1: large"), std::regex_replace(good, value, "lambda: 1"),
-        std::regex_replace(good, std::regex("process: [a-z_]+"), "process: brown_noise")}) {
+  const std::regex unit(", unit: [^,}]+"), value("(sigma|density|slope|coefficient|step): [^,}]+");
+  std::vector<std::string> all = {std::regex_replace(good, unit, ""),
+                                  std::regex_replace(good, unit, ", unit: K/h"),
+                                  std::regex_replace(good, unit, ", unit: " + std::string("m")),
+                                  std::regex_replace(good, value, "$1: large"),
+                                  std::regex_replace(good, value, "lambda: 1"),
+                                  std::regex_replace(good, std::regex("process: [a-z_]+"), "process: brown_noise")};
+  if (GetParam().registration->name != "drift")
+    all.push_back(std::regex_replace(good, value, "$1: -1"));  // downhill is a slope
+  for (const std::string& spoiled : all) {
     ASSERT_NE(spoiled, good);
     try {
       (void)processes_of(spoiled, GetParam().sensor);
@@ -289,6 +363,38 @@ TEST(RandomConstant, StaysWhatItWas) {
   EXPECT_EQ(block.Phi(0, 0), 1.0);
   EXPECT_EQ(block.Q_d(0, 0), 0.0);
   EXPECT_NEAR(block.P(0, 0), 9.80665e-3 * 9.80665e-3, 1e-18);
+}
+
+TEST(Drift, IsKnownFromTheStartAndMayFall) {
+  const auto process = process_of("{process: drift, slope: -0.4, unit: deg/h/h}", Sensor::kGyro);
+  const double slope = -0.4 * M_PI / 180.0 / 3600.0 / 3600.0;
+  const auto block = block_of(*process, 7200.0);
+  EXPECT_TRUE(block.P.isZero(0.0));
+  EXPECT_TRUE(block.Q_d.isZero(0.0));
+  EXPECT_NEAR((block.h * block.Phi * block.mean)(0, 0), 7200.0 * slope, 1e-14 * 7200.0 * std::abs(slope));
+  EXPECT_NEAR(*process->allan_variance(50.0), 1250.0 * slope * slope, 1e-14 * 1250.0 * slope * slope);
+  EXPECT_EQ(*process->hadamard_variance(50.0), 0.0);
+}
+
+TEST(RateRamp, IsADriftWhoseSlopeIsDrawn) {
+  const auto process = process_of("{process: rate_ramp, coefficient: 20, unit: ug/h}", Sensor::kAccel);
+  const double slope = 20e-6 * 9.80665 / 3600.0;
+  const auto block = block_of(*process, 100.0);
+  EXPECT_TRUE(block.mean.isZero(0.0));
+  const double variance = (block.h * block.Phi * block.P * block.Phi.transpose() * block.h.transpose())(0, 0);
+  EXPECT_NEAR(variance, 1e4 * slope * slope, 1e-14 * 1e4 * slope * slope);
+  EXPECT_NEAR(*process->allan_variance(std::sqrt(2.0)), slope * slope, 1e-14 * slope * slope);  // where people read R
+}
+
+// Backwards a straight line through the value falls where it rose, and steps on to where it came from.
+TEST(RateRamp, ReversedStatesLeadBack) {
+  const auto process = process_of("{process: rate_ramp, coefficient: 20, unit: ug/h}", Sensor::kAccel);
+  Eigen::VectorXd sign(2);
+  process->reversal(sign);
+  const Eigen::Vector2d start(3.0, 0.25);
+  const Eigen::Matrix2d Phi = block_of(*process, 40.0).Phi, mirror = sign.asDiagonal();
+  const Eigen::Vector2d back = mirror * Phi * mirror * Phi * start;
+  EXPECT_EQ(back, start);
 }
 
 TEST(ScaleFactor, MultipliesItsOwnAxis) {

@@ -32,6 +32,8 @@ struct Mission {
   double time_offset_s = 0.0;             ///< a fix tagged t is valid at t - offset
   std::vector<TimeSpan> standstill = {};  ///< in order; zero-velocity updates where asked for
   double earth_rate = geo::kEarthRate;    ///< negative for a recording run backwards
+  /// Where known drifts are zero; where absent, the beginning of the recording.
+  std::optional<geo::GpsTime> first_epoch = {};
 };
 
 /// Factors on the stated GNSS standard deviations.
@@ -94,7 +96,8 @@ class ForwardFilter {
   ForwardFilter(const Mission& mission, const noise::ImuErrorModel& model, const FilterOptions& options);
 
   [[nodiscard]] const StateLayout& layout() const { return layout_; }
-  /// Covariance of a start: navigation standard deviations in N, E, D, the rest from the error model.
+  /// Covariance of a start: navigation standard deviations in N, E, D, the rest from the error model. Sensor states have
+  /// the means that the model knows beforehand, as they are at nav.t.
   [[nodiscard]] FilterState initial_state(const record::NavState& nav, const Eigen::Vector3d& sd_position_n,
                                           const Eigen::Vector3d& sd_velocity_n, const Eigen::Vector3d& sd_attitude_n) const;
 

@@ -68,6 +68,8 @@ class StateLayout {
 
   /// Covariance of the non-navigation states at the start (size x size, navigation rows zero).
   [[nodiscard]] Eigen::MatrixXd initial_covariance() const;
+  /// Mean of the non-navigation states `elapsed` seconds after the start (navigation rows zero).
+  [[nodiscard]] Eigen::VectorXd mean(double elapsed) const;
   /// Sensor and auxiliary blocks in the order of their states.
   template <typename Visit>
   void for_each_block(Visit visit) const {

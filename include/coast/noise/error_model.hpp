@@ -23,7 +23,8 @@ class ImuErrorModel {
   /// Standard deviation of the additive states of an axis at the start, [signal]: what alignment has to expect of a bias.
   [[nodiscard]] double bias_sd(Sensor sensor, int axis) const;
   [[nodiscard]] const std::string& sensor_name() const { return sensor_name_; }
-  /// The same model with every white-noise density of one sensor multiplied (`factor` scales the standard deviation).
+  /// The same model with every white-noise density of one sensor multiplied (`factor` scales the standard deviation). Rounding
+  /// of samples is white noise to a filter and becomes such under a factor other than 1.
   [[nodiscard]] ImuErrorModel with_white_noise_scaled(Sensor sensor, double factor) const;
   /// The file again, in SI units.
   [[nodiscard]] std::string yaml() const;

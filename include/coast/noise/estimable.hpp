@@ -24,6 +24,12 @@ struct SampleBlock {
   [[nodiscard]] static SampleBlock zero(Eigen::Index states);
 };
 
+/// Whose samples, and how far apart.
+struct Sampling {
+  Sensor sensor = Sensor::kGyro;
+  double interval = 1.0;  ///< s
+};
+
 /// What is known of a signal before anything is estimated; ranges of parameters follow from it.
 struct SignalScale {
   double interval = 1.0;  ///< s
@@ -77,7 +83,7 @@ class Estimable {
   virtual void maximise(const BlockMoments& moments, double interval, const std::vector<bool>& fixed,
                         std::span<double> u) const = 0;
   /// The process at u for the filter, for simulation and for curves.
-  [[nodiscard]] virtual ProcessPtr process(std::span<const double> u, Sensor sensor) const = 0;
+  [[nodiscard]] virtual ProcessPtr process(std::span<const double> u, const Sampling& sampling) const = 0;
 };
 
 }  // namespace coast::noise

@@ -23,6 +23,15 @@ enum class Input {
   kPrevAxis,  ///< true signal of the previous axis: misalignment
 };
 
+/// What a sensor rounds to multiples of a step.
+struct Rounding {
+  enum class Of {
+    kIntegral,  ///< the integral of the output: the error of the integral never exceeds half a step
+    kSample,    ///< every sample by itself
+  } of;
+  double step;  ///< [signal] s or [signal], > 0
+};
+
 /// One process: error = (h x + white noise) * input, with x[k+1] = Phi(dt) x[k] + w[k], var w = Q_d(dt).
 ///
 /// All values are SI; `signal` below is rad/s (gyro) or m/s^2 (accelerometer) for additive processes, 1 otherwise.
@@ -40,6 +49,16 @@ class Process {
   virtual void output(Eigen::Ref<Eigen::RowVectorXd> h) const = 0;
   /// Covariance of x at the start of a mission.
   virtual void initial_covariance(Eigen::Ref<Eigen::MatrixXd> P) const = 0;
+  /// Mean of x at the start of a mission: zero but for what is known beforehand.
+  virtual void initial_mean(Eigen::Ref<Eigen::VectorXd> mean) const { mean.setZero(); }
+  /// The signs that the states take to a clock that runs backwards, if the error itself keeps its sign: -1 for a rate of
+  /// change.
+  virtual void reversal(Eigen::Ref<Eigen::VectorXd> sign) const { sign.setOnes(); }
+  /// Interval of a series that has values at instants of its own and holds each until the next, s. Nothing for a process in
+  /// continuous time. Phi and Q_d over whole intervals are those of the series; over others see the process.
+  [[nodiscard]] virtual std::optional<double> sample_interval() const { return {}; }
+  /// What the sensor rounds, after all other errors. The filter sees no more of it than `white_density`.
+  [[nodiscard]] virtual std::optional<Rounding> rounding() const { return {}; }
   /// Density of the white part of the output, [signal]^2/Hz; zero for a process that has states only.
   [[nodiscard]] virtual geo::Psd white_density() const { return {}; }
   /// Allan variance of the error at averaging time tau (s, > 0), [signal]^2. Nothing for a process that multiplies the true
@@ -72,7 +91,7 @@ struct Registration {
 
 /// Every process that exists, in the order of the manual.
 [[nodiscard]] const std::vector<Registration>& registry();
-/// How a process of this name is estimated. @throws std::invalid_argument  there is none
+/// How a process of this name is estimated; "ar(3)" for an order other than 2. @throws std::invalid_argument  there is none
 [[nodiscard]] const Estimable& estimable(std::string_view name);
 /// @throws InputError  unknown process (names the nearest), missing or negative value, wrong unit: with file and line
 [[nodiscard]] std::vector<ProcessPtr> make_processes(const config::Node& entry, const EntryContext& context);

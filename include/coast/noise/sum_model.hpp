@@ -43,7 +43,7 @@ class SumModel {
   [[nodiscard]] SampleBlock block(const std::vector<double>& u, double interval) const;
   /// One per parameter.
   [[nodiscard]] std::vector<SampleBlock> derivatives(const std::vector<double>& u, double interval) const;
-  [[nodiscard]] std::vector<ProcessPtr> processes(const std::vector<double>& u, Sensor sensor) const;
+  [[nodiscard]] std::vector<ProcessPtr> processes(const std::vector<double>& u, const Sampling& sampling) const;
 
  private:
   std::vector<Term> terms_;

@@ -162,9 +162,11 @@ class EstimableGaussMarkov final : public Estimable {
     return {by_beta, variances_of(at)};
   }
   void maximise(const BlockMoments& m, double interval, const std::vector<bool>& fixed, std::span<double> u) const override;
-  [[nodiscard]] ProcessPtr process(std::span<const double> u, Sensor sensor) const override {
-    return noise::make_gauss_markov(
-        {.name = "gauss_markov", .sigma = std::exp(0.5 * u[1]), .beta = std::exp(u[0]), .unit = si_unit(kSignal.of(sensor))});
+  [[nodiscard]] ProcessPtr process(std::span<const double> u, const Sampling& sampling) const override {
+    return noise::make_gauss_markov({.name = "gauss_markov",
+                                     .sigma = std::exp(0.5 * u[1]),
+                                     .beta = std::exp(u[0]),
+                                     .unit = si_unit(kSignal.of(sampling.sensor))});
   }
 };
 

@@ -13,6 +13,11 @@ Registration random_walk();
 Registration gauss_markov();
 Registration scale_factor();
 Registration misalignment();
+Registration drift();
+Registration rate_ramp();
+Registration flicker();
+Registration quantisation();
+Registration ar();
 
 /// White noise of the given density, [signal]/sqrt(Hz).
 [[nodiscard]] ProcessPtr make_white_noise(double density, Sensor sensor);
@@ -20,6 +25,8 @@ Registration misalignment();
 [[nodiscard]] const Estimable& estimable_white_noise();
 [[nodiscard]] const Estimable& estimable_random_walk();
 [[nodiscard]] const Estimable& estimable_gauss_markov();
+/// @throws std::invalid_argument  an order beyond 4
+[[nodiscard]] const Estimable& estimable_ar(int order);
 /// beta of an entry's `correlation_time_s`, 0 where the key is absent.
 [[nodiscard]] double beta_of(const config::Node& entry);
 

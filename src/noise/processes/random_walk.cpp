@@ -58,8 +58,8 @@ class EstimableRandomWalk final : public Estimable {
     const double steps = m.after(0, 0) - 2.0 * m.lagged(0, 0) + m.before(0, 0);
     u[0] = std::log(steps / (m.transitions * interval));
   }
-  [[nodiscard]] ProcessPtr process(std::span<const double> u, Sensor sensor) const override {
-    return std::make_shared<RandomWalk>(std::exp(0.5 * u[0]), si_unit(kSignalWalk.of(sensor)));
+  [[nodiscard]] ProcessPtr process(std::span<const double> u, const Sampling& sampling) const override {
+    return std::make_shared<RandomWalk>(std::exp(0.5 * u[0]), si_unit(kSignalWalk.of(sampling.sensor)));
   }
 };
 

@@ -64,8 +64,8 @@ class EstimableWhiteNoise final : public Estimable {
                 std::span<double> u) const override {
     if (!fixed[0]) u[0] = std::log(moments.residual / moments.samples * interval);
   }
-  [[nodiscard]] ProcessPtr process(std::span<const double> u, Sensor sensor) const override {
-    return make_white_noise(std::exp(0.5 * u[0]), sensor);
+  [[nodiscard]] ProcessPtr process(std::span<const double> u, const Sampling& sampling) const override {
+    return make_white_noise(std::exp(0.5 * u[0]), sampling.sensor);
   }
 };
 
