@@ -16,8 +16,6 @@ namespace coast::noise {
 
 namespace {
 
-constexpr std::size_t kFewestSamples = 100;
-
 /// Where the outliers are in the values of a record.
 std::vector<std::size_t> places_of(const std::vector<Outlier>& outliers, const StaticSignal& signal, std::size_t record) {
   std::vector<std::size_t> places;
@@ -28,14 +26,6 @@ std::vector<std::size_t> places_of(const std::vector<Outlier>& outliers, const S
     places.push_back(run->first + static_cast<std::size_t>(at - run->start));
   }
   return places;
-}
-
-std::vector<Outlier> find_outliers(const Likelihood& likelihood, const std::vector<double>& u) {
-  std::vector<Outlier> all;
-  for (std::size_t r = 0; r < likelihood.records().size(); ++r)
-    for (const Outlier& outlier : outliers_of(likelihood.records()[r].signal, likelihood.standardised_innovations(u, r), r))
-      all.push_back(outlier);
-  return all;
 }
 
 AllanCurve detrended_curve(const StaticSignal& signal) {
@@ -92,15 +82,21 @@ void bootstrap_intervals(const Likelihood& likelihood, const Fit& fit, const Cal
   }
 }
 
+void check(const StaticSignal& record) {
+  constexpr std::size_t kFewestSamples = 100;
+  if (record.values.size() < kFewestSamples)
+    throw NumericalError("too few samples", "",
+                         fmt::format("{} has {}, at least {} are needed", record.source, record.values.size(), kFewestSamples));
+  const auto [lowest, highest] = std::ranges::minmax(record.values);
+  if (!(highest > lowest))
+    throw NumericalError("the signal is constant", "", fmt::format("{}: every sample is {:g}", record.source, lowest));
+}
+
 }  // namespace
 
 AxisCalibration calibrate(const std::vector<StaticSignal>& given, const CalibrationOptions& options) {
   const auto began = std::chrono::steady_clock::now();
-  for (const StaticSignal& record : given)
-    if (record.values.size() < kFewestSamples)
-      throw NumericalError(
-          "too few samples", "",
-          fmt::format("{} has {}, at least {} are needed", record.source, record.values.size(), kFewestSamples));
+  for (const StaticSignal& record : given) check(record);
   AxisCalibration result;
   std::vector<StaticSignal> records = given;
   for (const StaticSignal& record : records) result.curves.push_back(allan_curve(record));
@@ -108,7 +104,7 @@ AxisCalibration calibrate(const std::vector<StaticSignal>& given, const Calibrat
   result.candidates = fit_candidates(records, detrended_curve(records.front()), options);
   result.chosen = choose(result.candidates, options.criterion);
 
-  result.outliers = find_outliers(Likelihood(records, result.best().model), result.best().fit.u);
+  result.outliers = outliers_of(Likelihood(records, result.best().model), result.best().fit.u);
   if (options.exclude_outliers && !result.outliers.empty()) {
     for (std::size_t r = 0; r < records.size(); ++r) {
       records[r] = without(records[r], places_of(result.outliers, records[r], r));

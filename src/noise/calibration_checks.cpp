@@ -51,12 +51,16 @@ Whiteness whiteness_of(const std::vector<double>& standardised, int fitted_param
   return result;
 }
 
-std::vector<Outlier> outliers_of(const StaticSignal& signal, const std::vector<double>& standardised, std::size_t record) {
-  const double bound = normal_bound(0.01 / static_cast<double>(standardised.size()));
-  const std::vector<double> times = times_of(signal);
+std::vector<Outlier> outliers_of(const Likelihood& likelihood, const std::vector<double>& u) {
   std::vector<Outlier> outliers;
-  for (std::size_t i = 0; i < standardised.size(); ++i)
-    if (std::abs(standardised[i]) > bound) outliers.push_back({record, times[i], standardised[i]});
+  for (std::size_t r = 0; r < likelihood.records().size(); ++r) {
+    const StaticSignal& signal = likelihood.records()[r].signal;
+    const double bound = normal_bound(0.01 / static_cast<double>(signal.values.size()));
+    const std::vector<double> standardised = likelihood.standardised_innovations(u, r, bound);
+    const std::vector<double> times = times_of(signal);
+    for (std::size_t i = 0; i < standardised.size(); ++i)
+      if (std::abs(standardised[i]) > bound) outliers.push_back({r, times[i], standardised[i]});
+  }
   return outliers;
 }
 

@@ -7,8 +7,7 @@ namespace coast::noise {
 
 [[nodiscard]] Whiteness whiteness_of(const std::vector<double>& standardised, int fitted_parameters);
 /// Innovations beyond what one record in a hundred would show.
-[[nodiscard]] std::vector<Outlier> outliers_of(const StaticSignal& signal, const std::vector<double>& standardised,
-                                               std::size_t record);
+[[nodiscard]] std::vector<Outlier> outliers_of(const Likelihood& likelihood, const std::vector<double>& u);
 /// @param curve  of the record that the estimate is from; level and drift of the model as in the record do not matter to it
 [[nodiscard]] CurveBand band_of(const AllanCurve& curve, const SumModel& model, const std::vector<double>& u,
                                 const StaticSignal& signal, double slope, const CalibrationOptions& options);

@@ -164,10 +164,10 @@ Likelihood::Expectation Likelihood::expectation(const std::vector<double>& u, st
   return result;
 }
 
-std::vector<double> Likelihood::standardised_innovations(const std::vector<double>& u, std::size_t record) const {
+std::vector<double> Likelihood::standardised_innovations(const std::vector<double>& u, std::size_t record, double gate) const {
   const SampleBlock block = model_.block(u, interval());
   const StaticSignal& signal = records_.at(record).signal;
-  return whitening_pass(block, signal, concentrate(block, signal, model_.mean()).curve);
+  return whitening_pass(block, signal, concentrate(block, signal, model_.mean()).curve, gate);
 }
 
 }  // namespace coast::noise

@@ -44,6 +44,33 @@ TEST(Estimators, EmNeverLosesLikelihoodAndReachesTheOptimumOfDirectSearch) {
   EXPECT_LT(likelihood.slope(direct.u).gradient.norm(), 1e-2);
 }
 
+/// Every process that can be estimated, in a sum with white noise.
+class EmOfEveryProcess : public testing::TestWithParam<const char*> {};
+INSTANTIATE_TEST_SUITE_P(Estimators, EmOfEveryProcess,
+                         testing::Values("gauss_markov", "random_walk", "quantisation", "flicker", "ar", "ar(3)"));
+
+TEST_P(EmOfEveryProcess, NeverLosesLikelihoodAndStopsWhereTheGradientDoes) {
+  const Estimable& process = estimable(GetParam());
+  const SumModel model({&estimable("white_noise"), &process}, Mean::kLevel);
+  std::vector<double> truth{std::log(0.09)};
+  for (const ParameterInfo& parameter : process.parameters())
+    truth.push_back(parameter.kind == ParameterInfo::Kind::kPartial ? 0.6
+                    : parameter.kind == ParameterInfo::Kind::kRate  ? std::log(0.05)
+                                                                    : std::log(0.2));
+  const StaticSignal record = StaticSignal::regular(test::simulate_block(model.block(truth, 1.0), 600, 31), 1.0);
+  const Likelihood likelihood({record}, model);
+  std::vector<double> start = truth;
+  for (double& u : start) u += 0.3;
+  const Fit em = fit_em(likelihood, start, {.iterations = 2000, .tolerance = 1e-9});
+  for (std::size_t i = 1; i < em.trace.size(); ++i)
+    ASSERT_GE(em.trace[i], em.trace[i - 1] - 1e-12 * std::abs(em.trace[i])) << i;
+  EXPECT_GT(em.trace.size(), 3U);
+  const Fit direct = fit_maximum_likelihood(likelihood, em.u);
+  EXPECT_TRUE(direct.converged);
+  // What EM leaves at a gain of 1e-9 a step and a rate of at most 0.999.
+  EXPECT_NEAR(direct.log_likelihood, em.log_likelihood, 1e-5);
+}
+
 TEST(Estimators, FixedParametersStay) {
   const Likelihood likelihood({figure_1(4)}, markov(1, Mean::kLevelAndDrift));
   const std::vector<double> start = logs({0.2, 0.02, 0.4});

@@ -2,6 +2,7 @@
 // The exact Gaussian log-likelihood of static records under a sum of processes, its gradient, and what the EM algorithm needs.
 
 #include <Eigen/Core>
+#include <limits>
 #include <vector>
 
 #include "coast/noise/static_signal.hpp"
@@ -59,7 +60,9 @@ class Likelihood {
   [[nodiscard]] Expectation expectation(const std::vector<double>& u, std::vector<double>& memory) const;
 
   /// e/sqrt(S) of every sample of a record, in the order of its values.
-  [[nodiscard]] std::vector<double> standardised_innovations(const std::vector<double>& u, std::size_t record) const;
+  /// @param gate  samples beyond it are told but not believed, up to 20 in a row
+  [[nodiscard]] std::vector<double> standardised_innovations(const std::vector<double>& u, std::size_t record,
+                                                             double gate = std::numeric_limits<double>::infinity()) const;
 
  private:
   std::vector<Detrended> records_;

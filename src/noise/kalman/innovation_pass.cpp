@@ -66,7 +66,9 @@ class InnovationPass {
 };
 
 template <int N>
-std::vector<double> whiten(const SampleBlock& block, const StaticSignal& signal, const MeanCurve& mean) {
+std::vector<double> whiten(const SampleBlock& block, const StaticSignal& signal, const MeanCurve& mean, double gate) {
+  constexpr int kPatience = 20;  // refused in a row: then it is the filter that is wrong
+  int refused = 0;
   const FixedModel<N> model(block);
   Gain<N> gain(model);
   typename FixedModel<N>::Vector a = FixedModel<N>::Vector::Zero();
@@ -82,6 +84,12 @@ std::vector<double> whiten(const SampleBlock& block, const StaticSignal& signal,
     for (std::size_t i = 0; i < run.count; ++i, ++at) {
       const double e = signal.values[run.first + i] - mean.level - mean.drift * time.at(at) - model.h.dot(a);
       white.push_back(e / std::sqrt(gain.S));
+      refused = std::abs(white.back()) > gate ? refused + 1 : 0;
+      if (refused > 0 && refused < kPatience) {
+        a = (model.Phi * a).eval();
+        gain.skip();
+        continue;
+      }
       a = (model.Phi * (a + gain.k * e)).eval();
       gain.step();
     }
@@ -95,8 +103,8 @@ InnovationSums innovation_pass(const SampleBlock& block, const StaticSignal& sig
   return with_size(block.h.size(), [&](auto size) { return InnovationPass<size()>(block).run(signal); });
 }
 
-std::vector<double> whitening_pass(const SampleBlock& block, const StaticSignal& signal, const MeanCurve& mean) {
-  return with_size(block.h.size(), [&](auto size) { return whiten<size()>(block, signal, mean); });
+std::vector<double> whitening_pass(const SampleBlock& block, const StaticSignal& signal, const MeanCurve& mean, double gate) {
+  return with_size(block.h.size(), [&](auto size) { return whiten<size()>(block, signal, mean, gate); });
 }
 
 }  // namespace coast::noise

@@ -51,8 +51,9 @@ struct SmootherScratch {
 [[nodiscard]] BlockMoments moment_pass(const SampleBlock& block, const StaticSignal& signal, const MeanCurve& mean,
                                        SmootherScratch& scratch);
 
-/// e/sqrt(S), in the order of the values.
-[[nodiscard]] std::vector<double> whitening_pass(const SampleBlock& block, const StaticSignal& signal, const MeanCurve& mean);
+/// e/sqrt(S), in the order of the values. What lies outside the gate is not believed, so that its neighbours do not look wrong.
+[[nodiscard]] std::vector<double> whitening_pass(const SampleBlock& block, const StaticSignal& signal, const MeanCurve& mean,
+                                                 double gate);
 
 /// Smoothed outputs (rows times state) and their variances at every `stride`-th grid point.
 struct SmoothedOutputs {

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "autoregression.hpp"
+#include "bounded_search.hpp"
 #include "entry.hpp"
 #include "processes/estimables.hpp"
 #include "processes/processes.hpp"
@@ -240,29 +241,35 @@ class EstimableAr final : public Estimable {
   std::string symbol_;
 };
 
-/// Regression of the expected transitions, which is the maximum but for the stationary start; the step towards it is halved
-/// until the start agrees too, so that the likelihood never falls (generalised EM).
+/// Regression of the expected transitions is the maximum but for the stationary start; from there, or from where it was, a
+/// search over the few parameters with the start in.
 void EstimableAr::maximise(const BlockMoments& m, double, const std::vector<bool>& fixed, std::span<double> u) const {
+  const std::vector<double> from(u.begin(), u.end());
+  std::vector<double> start = from;
   const VectorXd a = m.before.ldlt().solve(VectorXd(m.lagged.row(0)));
   const double variance = (m.after(0, 0) - a.dot(m.lagged.row(0))) / m.transitions;
   const std::optional<VectorXd> partial = to_partial(a);
-  if (!partial || !(variance > 0.0)) return;
-  std::vector<double> target(u.begin(), u.end());
-  for (std::size_t i = 0; i < target.size(); ++i) {
-    if (fixed[i]) continue;
-    const auto at = static_cast<Index>(i);
-    target[i] = at < order_ ? std::atanh((*partial)(at)) : std::log(variance);
-  }
-  const std::vector<double> from(u.begin(), u.end());
-  const double before = expected(m, from);
-  constexpr double kSmallest = 1e-6;
-  for (double share = 1.0; share > kSmallest; share *= 0.5) {
-    std::vector<double> next(from);
-    for (std::size_t i = 0; i < next.size(); ++i) next[i] += share * (target[i] - from[i]);
-    if (!(expected(m, next) >= before)) continue;
-    std::ranges::copy(next, u.begin());
-    return;
-  }
+  for (std::size_t i = 0; i < start.size() && partial && variance > 0.0; ++i)
+    if (!fixed[i]) start[i] = i + 1 < start.size() ? std::atanh((*partial)(static_cast<Index>(i))) : std::log(variance);
+  if (!(expected(m, start) > expected(m, from))) start = from;
+  std::vector<Interval> box;
+  constexpr double kReach = 1.0;  // from the start; the next M-step goes on
+  for (std::size_t i = 0; i < start.size(); ++i)
+    box.push_back(fixed[i] ? Interval{start[i], start[i]} : Interval{start[i] - kReach, start[i] + kReach});
+  constexpr double kStep = 1e-5;
+  const auto cost = [&](std::vector<double> at, VectorXd& gradient) {
+    for (std::size_t i = 0; i < at.size(); ++i) {
+      const double here = at[i];
+      at[i] = here + kStep;
+      const double above = expected(m, at);
+      at[i] = here - kStep;
+      gradient(static_cast<Index>(i)) = (expected(m, at) - above) / (2.0 * kStep);
+      at[i] = here;
+    }
+    return -expected(m, at);
+  };
+  const SearchResult found = search_within(start, box, 1e-4, 50, cost);
+  if (-found.value >= expected(m, from)) std::ranges::copy(found.u, u.begin());
 }
 
 }  // namespace
