@@ -67,14 +67,13 @@ class ScorePass {
   }
   static std::size_t at(Eigen::Index i) { return static_cast<std::size_t>(i); }
 
-  void predict_derivative(Eigen::Index i, const typename Model::Matrix& P_upd, const typename Model::Matrix& dP_upd) {
+  /// @param right  P_upd Phi'
+  void predict_derivative(Eigen::Index i, const typename Model::Matrix& right, const typename Model::Matrix& dP_upd) {
     const Model& slope = slopes_[at(i)];
-    typename Model::Matrix next = model_.Phi * dP_upd * model_.Phi.transpose() + slope.Q;
-    if (moves_[at(i)]) {
-      const typename Model::Matrix cross = slope.Phi * P_upd * model_.Phi.transpose();
-      next += cross + cross.transpose();
-    }
-    dP_[at(i)] = 0.5 * (next + next.transpose());
+    typename Model::Matrix next = model_.sparse.congruence(dP_upd);
+    // dPhi P_upd Phi' = ((P_upd Phi')' dPhi')'
+    if (moves_[at(i)]) next += 2.0 * slope.sparse.right(right.transpose());
+    dP_[at(i)] = 0.5 * (next + next.transpose()) + slope.Q;
   }
   void advance_states(const typename Model::Vector& a_upd) {
     da_ = (model_.Phi * da_).eval();
@@ -85,7 +84,8 @@ class ScorePass {
 
   void skip() {
     advance_states(typename Model::Vector(a_));
-    for (Eigen::Index i = 0; i < count_; ++i) predict_derivative(i, gain_.P, typename Model::Matrix(dP_[at(i)]));
+    const typename Model::Matrix right = model_.sparse.right(gain_.P);
+    for (Eigen::Index i = 0; i < count_; ++i) predict_derivative(i, right, typename Model::Matrix(dP_[at(i)]));
     gain_.skip();
     gains();
     steady_ = false;
@@ -101,10 +101,10 @@ class ScorePass {
     sums_.information.noalias() += 0.5 / (S * S) * dS_ * dS_.transpose();
     da_ += gain_.k * de + e * dk_;
     advance_states(typename Model::Vector(a_ + gain_.k * e));
-    const typename Model::Matrix P_upd = gain_.P - S * gain_.k * gain_.k.transpose();
+    const typename Model::Matrix right = model_.sparse.right(gain_.P - S * gain_.k * gain_.k.transpose());
     for (Eigen::Index i = 0; i < count_; ++i) {
       const typename Model::Matrix cross = dk_.col(i) * gain_.k.transpose();
-      predict_derivative(i, P_upd, dP_[at(i)] - dS_(i) * gain_.k * gain_.k.transpose() - S * (cross + cross.transpose()));
+      predict_derivative(i, right, dP_[at(i)] - dS_(i) * gain_.k * gain_.k.transpose() - S * (cross + cross.transpose()));
     }
     gain_.step();
     gains();
