@@ -79,7 +79,7 @@ const fs::path& simulated() {
                                             (folder.path() / "out").string()),
                                 folder.path());
     EXPECT_EQ(outcome.status, 0) << outcome.error;
-    EXPECT_NE(outcome.error.find("1 hole of 7 intervals"), std::string::npos) << outcome.error;
+    EXPECT_NE(outcome.error.find("1 hole of 8 intervals"), std::string::npos) << outcome.error;
     return folder.path();
   }();
   return made;
@@ -128,7 +128,7 @@ TEST(Calibrate, ProcessReadsTheErrorModelAsItIs) {
   const test::TemporaryDirectory folder;
   write(folder.path() / "scenario.yaml", R"(
 schema: coast.scenario/1
-trajectory: {kind: car_roundabout, duration_s: 120, static_s: 30, origin_deg_m: [46.52, 6.57, 400], course_deg: 30}
+trajectory: {kind: car_roundabout, duration_s: 340, static_s: 30, origin_deg_m: [46.52, 6.57, 400], course_deg: 30}
 imu: {rate_hz: 100, error_model: model.yaml, lever_arm_m: [0.3, -0.2, -1.1]}
 gnss: {rate_hz: 5, sd_m: [0.01, 0.01, 0.02]}
 start_gps: {week: 2374, sow: 208800}
@@ -153,7 +153,7 @@ TEST(Calibrate, ReportIsMadeAgainFromStoredResults) {
 TEST(Calibrate, TakesAnImuFileAloneAndSaysWhatIsDefault) {
   const test::TemporaryDirectory folder;
   std::string text = simulated_csv(7);
-  text.resize(text.find("\n20.00,") + 1);  // 20 s: the whole search of models runs
+  text.resize(text.find("\n5.00,") + 1);  // 5 s: the whole search of models runs
   write(folder.path() / "imu.csv", text);
   const Outcome outcome = run(fmt::format("calibrate '{}'", (folder.path() / "imu.csv").string()), folder.path());
   ASSERT_EQ(outcome.status, 0) << outcome.error;
