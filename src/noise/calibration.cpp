@@ -11,7 +11,6 @@
 #include "coast/noise/chi_square.hpp"
 #include "coast/record/error.hpp"
 #include "model_search.hpp"
-#include "polish.hpp"
 
 namespace coast::noise {
 
@@ -118,9 +117,7 @@ AxisCalibration calibrate(const std::vector<StaticSignal>& given, const Calibrat
 
   Candidate& best = result.candidates[result.chosen];
   const Likelihood likelihood(records, best.model);
-  const ShortLikelihood shortened(likelihood);
-  polish([&](const std::vector<double>& u) { return likelihood.slope(u); }, box_of(likelihood, best.fit.u, {}),
-         excess_curvature(shortened, best.fit.u), {}, best.fit);
+  best.fit = fit_maximum_likelihood(likelihood, best.fit.u);
   if (options.progress) options.progress("intervals", 0.0);
   constexpr int kEmPasses = 20;
   result.em =

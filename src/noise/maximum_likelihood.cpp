@@ -6,7 +6,8 @@ namespace coast::noise {
 
 Fit fit_maximum_likelihood(const Likelihood& likelihood, const std::vector<double>& start,
                            const MaximumLikelihoodOptions& options) {
-  constexpr int kIterations = 40;
+  constexpr int kIterations = 30;
+  constexpr int kShortSteps = 12;
   constexpr double kGradient = 1e-3;
   constexpr double kShortTolerance = 1e-5;
   const std::vector<Interval> box = box_of(likelihood, start, options.fixed);
@@ -24,7 +25,8 @@ Fit fit_maximum_likelihood(const Likelihood& likelihood, const std::vector<doubl
   const ShortLikelihood shortened(likelihood);
   if (options.pyramid && !shortened.is_whole()) {
     fit.u = search(shortened).u;
-    polish([&](const std::vector<double>& u) { return shortened.slope(u); }, box, {}, {.tolerance = kShortTolerance}, fit);
+    polish([&](const std::vector<double>& u) { return shortened.slope(u); }, box, {},
+           {.tolerance = kShortTolerance, .steps = kShortSteps}, fit);
     fit.trace.clear();
     fit.passes = 0;
     excess = excess_curvature(shortened, fit.u);

@@ -40,8 +40,8 @@ void score(const Likelihood& likelihood, Candidate& candidate) {
   candidate.parameters = static_cast<int>(candidate.model.parameters()) +
                          coefficients(candidate.model.mean()) * static_cast<int>(likelihood.records().size());
   const auto k = static_cast<double>(candidate.parameters);
-  candidate.bic = -2.0 * candidate.fit.log_likelihood + k * std::log(n);
-  candidate.aicc = -2.0 * candidate.fit.log_likelihood + 2.0 * k + 2.0 * k * (k + 1.0) / std::max(1.0, n - k - 1.0);
+  candidate.bic = -2.0 * candidate.compared_log_likelihood + k * std::log(n);
+  candidate.aicc = -2.0 * candidate.compared_log_likelihood + 2.0 * k + 2.0 * k * (k + 1.0) / std::max(1.0, n - k - 1.0);
 }
 
 /// Each half scored with what the other was fitted to.
@@ -87,7 +87,7 @@ std::vector<SumModel> larger(const SumModel& model, const CalibrationOptions& op
   if (has("random_walk") == 0) with("random_walk");
   if (has("quantisation") == 0) with("quantisation");
   if (model.mean() != Mean::kLevelAndDrift) sums.emplace_back(now, Mean::kLevelAndDrift);
-  const std::vector<const Estimable*> bases = named({"white_noise", "ar(1)", "ar(2)", "ar(3)", "ar(4)"});
+  const std::vector<const Estimable*> bases = named({"white_noise", "ar(1)", "ar(2)", "ar(3)"});
   for (std::size_t b = 0; b + 1 < bases.size(); ++b) {
     if (std::ranges::count(now, bases[b]) == 0) continue;
     std::vector<const Estimable*> processes = now;
@@ -190,7 +190,7 @@ class Search {
     if (!rest) return at;
     const std::size_t found = fit(*rest);
     // What is not there leaves the likelihood where it was.
-    tried_[at].fit.log_likelihood = tried_[found].fit.log_likelihood;
+    tried_[at].fit.log_likelihood = tried_[at].compared_log_likelihood = tried_[found].compared_log_likelihood;
     score(Likelihood(records_, tried_[at].model), tried_[at]);
     return found;
   }
@@ -205,8 +205,6 @@ class Search {
 
 Candidate fit_candidate(const std::vector<StaticSignal>& records, const AllanCurve& curve, const SumModel& model,
                         const std::vector<std::vector<double>>& starts) {
-  // For the table; what is chosen is polished further.
-  constexpr PolishOptions kForTheTable{.tolerance = 1e-3, .steps = 8};
   Candidate candidate;
   candidate.model = model;
   const Likelihood likelihood(records, model);
@@ -222,11 +220,7 @@ Candidate fit_candidate(const std::vector<StaticSignal>& records, const AllanCur
   }
   candidate.fit = fit_maximum_likelihood(likelihood, best, {.polished = shortened.is_whole()});
   candidate.degenerate = std::ranges::count(silent_terms(shortened, model.ranges(scale), model, candidate.fit.u), true) > 0;
-  if (!candidate.degenerate && !shortened.is_whole()) {
-    Fit& fit = candidate.fit;
-    polish([&](const std::vector<double>& u) { return likelihood.slope(u); }, box_of(likelihood, fit.u, {}),
-           excess_curvature(shortened, fit.u), kForTheTable, fit);
-  }
+  candidate.compared_log_likelihood = candidate.fit.log_likelihood;
   score(likelihood, candidate);
   return candidate;
 }
@@ -242,7 +236,7 @@ std::vector<Candidate> fit_candidates(const std::vector<StaticSignal>& records, 
 
 bool better(const Candidate& a, const Candidate& b, Criterion criterion) {
   const auto cost = [&](const Candidate& c) {
-    if (!std::isfinite(c.fit.log_likelihood)) return std::numeric_limits<double>::infinity();
+    if (!std::isfinite(c.compared_log_likelihood)) return std::numeric_limits<double>::infinity();
     if (criterion == Criterion::kHeldOut) return c.held_out ? -*c.held_out : std::numeric_limits<double>::infinity();
     return criterion == Criterion::kBic ? c.bic : c.aicc;
   };
@@ -253,7 +247,7 @@ std::size_t choose(const std::vector<Candidate>& candidates, Criterion criterion
   std::size_t best = 0;
   for (std::size_t i = 1; i < candidates.size(); ++i)
     if (better(candidates[i], candidates[best], criterion)) best = i;
-  if (!std::isfinite(candidates[best].fit.log_likelihood))
+  if (!std::isfinite(candidates[best].compared_log_likelihood))
     throw NumericalError("no sum of processes has a finite likelihood", "", "is the signal constant?");
   return best;
 }

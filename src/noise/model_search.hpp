@@ -5,7 +5,8 @@
 
 namespace coast::noise {
 
-/// Fits one sum: start from the Allan curve and from what smaller sums found, then maximum likelihood.
+/// Fits one sum: start from the Allan curve and from what other sums found, then maximum likelihood, of a long record on what
+/// ShortLikelihood keeps of it.
 /// @param starts  further start values of u
 [[nodiscard]] Candidate fit_candidate(const std::vector<StaticSignal>& records, const AllanCurve& curve, const SumModel& model,
                                       const std::vector<std::vector<double>>& starts);

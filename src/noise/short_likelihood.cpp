@@ -22,8 +22,8 @@ std::optional<Likelihood> on_block_means(const Likelihood& likelihood, double mo
 }
 
 ShortLikelihood::ShortLikelihood(const Likelihood& likelihood) {
-  constexpr double kBlocks = 8000.0;
-  constexpr double kBeginning = 16000.0;
+  constexpr double kBlocks = 4000.0;
+  constexpr double kBeginning = 8000.0;
   if (likelihood.samples() < kLong) {
     parts_.push_back(likelihood);
     return;

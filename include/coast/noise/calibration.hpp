@@ -31,7 +31,9 @@ struct CalibrationOptions {
 /// One sum of processes, fitted.
 struct Candidate {
   SumModel model;
-  Fit fit;
+  Fit fit;  ///< of the chosen one to all samples
+  /// What the criteria compare: of a record beyond 40 000 samples on 4000 block means and its first 8000 samples.
+  double compared_log_likelihood = 0.0;
   int parameters = 0;  ///< of the processes and of the means
   double bic = 0.0;
   double aicc = 0.0;
