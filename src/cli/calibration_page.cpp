@@ -62,7 +62,8 @@ report::Tile model_tile(const CalibrationResult& result, Sensor sensor) {
   if (std::ranges::all_of(axes, [&](const auto* a) { return short_name(*a) == short_name(*axes.front()); }))
     tile.value = short_name(*axes.front());
   tile.explanation =
-      "The sum of processes that the criterion chose, axis by axis: WN white noise, GM Gauss-Markov, RW random walk, DR drift.";
+      "The sum of processes that the criterion chose, axis by axis: WN white noise, GM Gauss-Markov, RW random walk, AR noise "
+      "that the sensor filtered, QN rounding, DR drift.";
   return tile;
 }
 

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "calibration_page_parts.hpp"
@@ -161,10 +162,13 @@ report::Panel allan_panel(const CalibratedAxis& axis) {
   }
   add_model(axis, unit, plot);
   const bool several = r.curves.size() > 1;
+  // None of the colours that the first record or the processes have.
+  constexpr std::array kOthers{report::Tone::kForward, report::Tone::kSmoothed, report::Tone::kSbas, report::Tone::kSingle,
+                               report::Tone::kPpp};
   for (std::size_t i = 0; i < r.curves.size(); ++i) {
     report::Line& line =
         report::add_line(plot, several ? record_name(axis.signals[i]) : "record", allan_series(r.curves[i], unit, i == 0),
-                         i == 0 ? tone_of(axis) : report::Tone::kAuto);
+                         i == 0 ? tone_of(axis) : kOthers[(i - 1) % kOthers.size()]);
     if (i == 0) line.band_label = "95 %";
     line.width_px = i == 0 ? 1.8 : 1.2;
   }

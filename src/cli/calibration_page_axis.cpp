@@ -30,6 +30,15 @@ report::Note outlier_note(const noise::AxisCalibration& r) {
                                           : "kept; `outliers: exclude` leaves them out")};
 }
 
+/// The two ways to the maximum have to agree.
+std::optional<report::Note> search_note(const noise::AxisCalibration& r) {
+  constexpr double kMatters = 0.1;
+  const double lead = r.em.log_likelihood - r.best().fit.log_likelihood;
+  if (!(lead > kMatters)) return {};
+  return report::Note{report::Note::Kind::kWarning, "The direct search ended below EM",
+                      fmt::format("EM came {:.2g} higher in log-likelihood, so the values below are not the maximum.", lead)};
+}
+
 std::string lead_of(const CalibratedAxis& axis) {
   const noise::AxisCalibration& r = axis.result;
   const noise::Candidate& best = r.best();
@@ -130,6 +139,7 @@ report::Section axis_section(const CalibrationConfig& config, const CalibratedAx
   section.lead = lead_of(axis);
   for (const std::string& remark : r.remarks) section.notes.push_back({report::Note::Kind::kInfo, "", remark});
   if (!r.outliers.empty()) section.notes.push_back(outlier_note(r));
+  if (auto note = search_note(r)) section.notes.push_back(std::move(*note));
   section.tables.push_back(parameter_table(axis));
   if (auto table = combination_table(axis)) section.tables.push_back(std::move(*table));
   section.tables.push_back(candidate_table(axis));

@@ -36,13 +36,13 @@ std::optional<report::Panel> search_panel(const CalibratedAxis& axis) {
   report::Series of_em = below(em.trace, optimum);
   report::Series of_direct = below(direct.trace, optimum);
   if (of_em.x.empty() && of_direct.x.empty()) return {};
-  report::Panel panel = report::xy_panel(
-      id_of(axis) + "-search", "Way to the optimum", {"iteration", "", report::Axis::Scale::kLinear, {}, {}},
-      {"below the optimum", "", report::Axis::Scale::kLog, {}, {}},
-      fmt::format(
-          "The direct search took {} passes over the record, EM {} and did {}. Below 0.1 the estimate would not change in "
-          "any digit that matters.",
-          direct.passes, em.passes, em.converged ? "converge" : "not converge in that"));
+  report::Panel panel =
+      report::xy_panel(id_of(axis) + "-search", "Way to the optimum", {"iteration", "", report::Axis::Scale::kLinear, {}, {}},
+                       {"below the optimum", "", report::Axis::Scale::kLog, {}, {}},
+                       fmt::format("Log-likelihood under the largest that either found. The direct search: {} passes over the "
+                                   "record at full rate; EM: {}, "
+                                   "{}. Below 0.1 no estimate changes in a digit that matters.",
+                                   direct.passes, em.passes, em.converged ? "converged" : "not converged by then"));
   // Two decades at least, or a logarithmic axis has no numbers.
   double least = std::numeric_limits<double>::infinity();
   double greatest = 0.0;
