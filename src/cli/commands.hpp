@@ -22,6 +22,10 @@ void process(const std::filesystem::path& run_yaml, const CommonOptions& options
 void simulate(const std::filesystem::path& scenario_yaml, std::optional<std::uint64_t> seed, const CommonOptions& options);
 /// `coast outage study.yaml`: outages x error models -> drift tables and figures.
 void outage(const std::filesystem::path& study_yaml, const CommonOptions& options);
+/// `coast calibrate INPUT`: static recordings -> error_model.yaml, calibration.json, report.html.
+void calibrate(const std::filesystem::path& input, const CommonOptions& options);
+/// The calibration.yaml of the help page, every line behind `indent`.
+[[nodiscard]] std::string calibration_example(const std::string& indent);
 /// `coast compare a.nav b.nav`: differences a - b in N, E, D and attitude.
 void compare(const std::filesystem::path& a, const std::filesystem::path& b, const Eigen::Vector3d& lever_arm_b,
              const CommonOptions& options);

@@ -55,6 +55,16 @@ int run(int argc, char** argv) {
   outage->add_option("study", input, "study.yaml: run and sweep, or scenario and seeds")->required();
   outage->callback([&] { coast::cli::outage(input, common); });
 
+  auto* calibrate =
+      subcommand(app, "calibrate", "static records -> IMU error model with intervals, and what they cannot tell", "", common);
+  calibrate->add_option("input", input, "an IMU file at rest (default CSV columns, KF-GINS, IMR), or calibration.yaml")
+      ->required();
+  calibrate->footer(
+      fmt::format("Examples:\n  coast calibrate imu.csv --out imu-model\n  coast calibrate calibration.yaml\n\n"
+                  "calibration.yaml:\n{}",
+                  coast::cli::calibration_example("  ")));
+  calibrate->callback([&] { coast::cli::calibrate(input, common); });
+
   auto* compare = subcommand(app, "compare", "two trajectories: N, E, D and attitude differences, first minus second",
                              "coast compare results/trajectory.nav truth.nav", common);
   compare->add_option("first", input, ".nav, CSV or SBET")->required();

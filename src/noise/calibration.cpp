@@ -32,12 +32,19 @@ AllanCurve detrended_curve(const StaticSignal& signal) {
   return allan_curve(detrend(signal).signal);
 }
 
+std::vector<Fit> fit_each(const std::vector<StaticSignal>& records, const Candidate& joint) {
+  std::vector<Fit> own;
+  if (records.size() < 2) return own;
+  for (const StaticSignal& record : records)
+    own.push_back(fit_maximum_likelihood(Likelihood({record}, joint.model), joint.fit.u));
+  return own;
+}
+
 /// One set of parameters for all records against one for each: likelihood ratio, chi-square.
-std::optional<double> test_of_common_parameters(const std::vector<StaticSignal>& records, const Candidate& joint) {
+std::optional<double> test_of_common_parameters(const std::vector<Fit>& records, const Candidate& joint) {
   if (records.size() < 2) return {};
   double separate = 0.0;
-  for (const StaticSignal& record : records)
-    separate += fit_maximum_likelihood(Likelihood({record}, joint.model), joint.fit.u).log_likelihood;
+  for (const Fit& record : records) separate += record.log_likelihood;
   const double ratio = 2.0 * (separate - joint.fit.log_likelihood);
   const auto dof = static_cast<double>(joint.model.parameters() * (records.size() - 1));
   return chi2_survival(dof, std::max(0.0, ratio));
@@ -92,19 +99,19 @@ AxisCalibration calibrate(const std::vector<StaticSignal>& given, const Calibrat
   for (const StaticSignal& record : given) check(record);
   AxisCalibration result;
   std::vector<StaticSignal> records = given;
-  for (const StaticSignal& record : records) result.curves.push_back(detrended_curve(record));
+  for (const StaticSignal& record : records) result.curves.push_back(allan_curve(record));
   result.reading = read_coefficients(result.curves.front());
-  result.candidates = fit_candidates(records, result.curves.front(), options);
+  result.candidates = fit_candidates(records, detrended_curve(records.front()), options);
   result.chosen = choose(result.candidates, options.criterion);
 
   result.outliers = outliers_of(Likelihood(records, result.best().model), result.best().fit.u);
   if (options.exclude_outliers && !result.outliers.empty()) {
     for (std::size_t r = 0; r < records.size(); ++r) {
       records[r] = without(records[r], places_of(result.outliers, records[r], r));
-      result.curves[r] = detrended_curve(records[r]);
+      result.curves[r] = allan_curve(records[r]);
     }
     result.outliers_excluded = true;
-    result.candidates = fit_candidates(records, result.curves.front(), options);
+    result.candidates = fit_candidates(records, detrended_curve(records.front()), options);
     result.chosen = choose(result.candidates, options.criterion);
   }
 
@@ -112,8 +119,9 @@ AxisCalibration calibrate(const std::vector<StaticSignal>& given, const Calibrat
   const Likelihood likelihood(records, best.model);
   if (options.progress) options.progress("intervals", 0.0);
   constexpr int kEmPasses = 20;
-  result.em = fit_em(likelihood, fit_curve(result.curves.front(), best.model, likelihood.scale(), CurveFit::kWaveletMoments),
-                     {.iterations = kEmPasses});
+  result.em =
+      fit_em(likelihood, fit_curve(detrended_curve(records.front()), best.model, likelihood.scale(), CurveFit::kWaveletMoments),
+             {.iterations = kEmPasses});
   result.means = likelihood.value(best.fit.u).means;
   Eigen::MatrixXd information =
       Eigen::MatrixXd::Zero(static_cast<Eigen::Index>(best.fit.u.size()), static_cast<Eigen::Index>(best.fit.u.size()));
@@ -128,9 +136,10 @@ AxisCalibration calibrate(const std::vector<StaticSignal>& given, const Calibrat
   result.combinations = combinations_of(best.model, information);
   result.remarks = remarks_of(best.model, result.parameters, covariance, duration);
   result.whiteness = whiteness_of(likelihood.standardised_innovations(best.fit.u, 0), static_cast<int>(best.fit.u.size()));
-  result.common_parameters_p = test_of_common_parameters(records, best);
+  result.own = fit_each(records, best);
+  result.common_parameters_p = test_of_common_parameters(result.own, best);
   if (options.progress) options.progress("realisations of the estimate", 0.0);
-  result.band = band_of(allan_curve(records.front()), best.model, best.fit.u, records.front(),
+  result.band = band_of(result.curves.front(), best.model, best.fit.u, records.front(),
                         best.model.mean() == Mean::kLevelAndDrift ? result.means.front().value(1) : 0.0, options);
   result.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - began).count();
   return result;

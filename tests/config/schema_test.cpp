@@ -25,7 +25,7 @@ TEST(Schemas, AreOfOneDraft) {
 }
 
 TEST(Schemas, OwnExamplesAreValid) {
-  for (const char* name : {"imu_error_model", "run", "scenario", "study", "summary"}) {
+  for (const char* name : {"calibration", "calibration_run", "imu_error_model", "run", "scenario", "study", "summary"}) {
     const json examples = test::schema(name).at("examples");
     ASSERT_FALSE(examples.empty()) << name;
     for (const json& example : examples) test::expect_valid(name, example, "example");
@@ -66,6 +66,13 @@ TEST(Schemas, RefuseWhatTheProgramRefuses) {
   EXPECT_TRUE(refused("study", {{"sweep", nullptr}, {"scenario", "s.yaml"}, {"seeds", hundred_seeds}}));
   EXPECT_TRUE(refused("study", {{"scenario", "s.yaml"}, {"seeds", hundred_seeds}}));
   EXPECT_TRUE(refused("study", {{"floors", json::array()}}));
+  EXPECT_FALSE(refused("calibration_run", {{"criterion", "aicc"}}));
+  EXPECT_TRUE(refused("calibration_run", {{"records", nullptr}}));
+  EXPECT_TRUE(refused("calibration_run", {{"records", json::array()}}));
+  EXPECT_TRUE(refused("calibration_run", {{"axes", {"gyro_w"}}}));
+  EXPECT_TRUE(refused("calibration_run", {{"turn_on_bias", {{"gyro", {{"unit", "mg"}}}}}}));
+  EXPECT_TRUE(refused("calibration", {{"axes", nullptr}}));
+  EXPECT_FALSE(refused("calibration", {{"more", 1}}));  // outputs may gain keys
   EXPECT_TRUE(refused("scenario", {{"trajectory", {{"kind", "rocket"}}}}));
   EXPECT_TRUE(refused("scenario", {{"schema", nullptr}}));
   EXPECT_TRUE(refused("summary", {{"gnss", {{"used", -1}}}}));

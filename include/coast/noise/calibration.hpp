@@ -78,7 +78,7 @@ struct CurveBand {
 
 /// One axis, from one or several records.
 struct AxisCalibration {
-  std::vector<AllanCurve> curves;  ///< of each record
+  std::vector<AllanCurve> curves;  ///< of each record as it is, with its drift
   AllanReading reading;            ///< of the first
   std::vector<Candidate> candidates;
   std::size_t chosen = 0;
@@ -93,6 +93,7 @@ struct AxisCalibration {
   CurveBand band;
   /// Several records: test of one set of parameters for all against one for each.
   std::optional<double> common_parameters_p;
+  std::vector<Fit> own;  ///< several records: the chosen sum fitted to each alone
   double seconds = 0.0;  ///< spent estimating
 
   [[nodiscard]] const Candidate& best() const { return candidates.at(chosen); }

@@ -1,0 +1,178 @@
+// calibration.json: everything that was found, absent what the records do not tell.
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "calibration_result.hpp"
+#include "calibration_units.hpp"
+
+namespace coast::cli {
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+constexpr std::size_t kMostOutliers = 200;  // listed one by one
+
+void put(Json& j, const char* key, const std::optional<double>& value) {
+  if (value && std::isfinite(*value)) j[key] = *value;
+}
+
+Json parameter_json(const CalibratedAxis& axis, std::size_t i) {
+  const noise::ParameterEstimate& p = axis.result.parameters[i];
+  const noise::SumModel& model = axis.result.best().model;
+  Json j = {{"name", p.name}, {"value", p.value}, {"unit", si_unit_of(model.parameter(i).unit, axis.axis.sensor)}};
+  put(j, "lower_95", p.lower);
+  put(j, "upper_95", p.upper);
+  put(j, "cramer_rao_relative_sd", p.relative_bound);
+  put(j, "record_for_25_percent_s", p.duration_for_quarter);
+  const SheetValue sheet = sheet_value(model, i, axis.axis.sensor, p);
+  Json& data_sheet = j["data_sheet"] = {{"name", sheet.name}, {"value", sheet.value}, {"unit", sheet.unit}};
+  put(data_sheet, "lower_95", sheet.lower);
+  put(data_sheet, "upper_95", sheet.upper);
+  return j;
+}
+
+Json candidate_json(const noise::Candidate& c, bool chosen) {
+  Json j = {{"model", c.model.name()}, {"log_likelihood", c.fit.log_likelihood}, {"parameters", c.parameters}};
+  put(j, "bic", c.bic);
+  put(j, "aicc", c.aicc);
+  put(j, "held_out_per_sample", c.held_out);
+  j["converged"] = c.fit.converged;
+  j["degenerate"] = c.degenerate;
+  j["chosen"] = chosen;
+  return j;
+}
+
+Json mean_json(const noise::MeanEstimate& mean) {
+  Json j = Json::object();
+  if (mean.value.size() > 0) j["level"] = {{"value", mean.value(0)}, {"sd", std::sqrt(mean.covariance(0, 0))}};
+  if (mean.value.size() > 1) j["drift_per_s"] = {{"value", mean.value(1)}, {"sd", std::sqrt(mean.covariance(1, 1))}};
+  return j;
+}
+
+Json curve_json(const noise::AllanCurve& curve) {
+  Json j;
+  for (const char* key : {"tau_s", "deviation", "lower_95", "upper_95", "edf", "hadamard"}) j[key] = Json::array();
+  for (const noise::AllanPoint& point : curve) {
+    j["tau_s"].push_back(point.tau);
+    j["deviation"].push_back(point.allan.value);
+    j["lower_95"].push_back(point.allan.interval_95.lower);
+    j["upper_95"].push_back(point.allan.interval_95.upper);
+    j["edf"].push_back(point.allan.edf);
+    j["hadamard"].push_back(point.hadamard.value);
+  }
+  return j;
+}
+
+Json classical_json(const noise::AllanReading& reading, noise::Sensor sensor) {
+  Json list = Json::array();
+  const auto add = [&](const char* name, const std::optional<noise::CoefficientReading>& c, const char* unit) {
+    if (!c) return;
+    list.push_back({{"name", name},
+                    {"value", in_unit(c->value, unit)},
+                    {"unit", unit},
+                    {"lower_95", in_unit(c->interval_95.lower, unit)},
+                    {"upper_95", in_unit(c->interval_95.upper, unit)},
+                    {"tau_from_s", c->tau_from},
+                    {"tau_to_s", c->tau_to}});
+  };
+  const SheetUnits& units = sheet_units(sensor);
+  add("white_noise", reading.white_noise, units.white_noise);
+  add("bias_instability", reading.bias_instability, units.signal);
+  add("rate_random_walk", reading.rate_random_walk, units.rate_random_walk);
+  add("rate_ramp", reading.rate_ramp, units.rate_ramp);
+  add("quantisation", reading.quantisation, units.integral);
+  return list;
+}
+
+Json outliers_json(const noise::AxisCalibration& result) {
+  Json j = {{"count", result.outliers.size()}, {"excluded", result.outliers_excluded}, {"first", Json::array()}};
+  for (const noise::Outlier& o : result.outliers) {
+    if (j["first"].size() == kMostOutliers) break;
+    j["first"].push_back({{"record", o.record}, {"time_s", o.time_s}, {"sigmas", o.sigmas}});
+  }
+  return j;
+}
+
+Json band_json(const noise::CurveBand& band) {
+  return {{"inside", band.inside},
+          {"tau_s", band.tau},
+          {"lower_95", band.lower},
+          {"median", band.median},
+          {"upper_95", band.upper}};
+}
+
+Json own_json(const CalibratedAxis& axis) {
+  Json list = Json::array();
+  const noise::SumModel& model = axis.result.best().model;
+  for (const OwnEstimate& own : axis.own) {
+    Json values = Json::array();
+    for (std::size_t i = 0; i < own.u.size(); ++i) {
+      Json j = {{"name", model.parameter_name(i)}, {"value", model.parameter(i).value(own.u[i])}};
+      put(j, "cramer_rao_relative_sd", own.sd[i]);
+      values.push_back(std::move(j));
+    }
+    list.push_back(std::move(values));
+  }
+  return list;
+}
+
+Json axis_json(const CalibratedAxis& axis) {
+  const noise::AxisCalibration& r = axis.result;
+  const noise::Candidate& best = r.best();
+  std::size_t samples = 0;
+  for (const noise::StaticSignal& signal : axis.signals) samples += signal.values.size();
+  Json j = {{"sensor", axis.axis.sensor_name()},
+            {"axis", axis.axis.axis_name()},
+            {"model", best.model.name()},
+            {"log_likelihood", best.fit.log_likelihood},
+            {"samples", samples}};
+  j["parameters"] = Json::array();
+  for (std::size_t i = 0; i < r.parameters.size(); ++i) j["parameters"].push_back(parameter_json(axis, i));
+  j["means"] = Json::array();
+  for (const noise::MeanEstimate& mean : r.means) j["means"].push_back(mean_json(mean));
+  j["identifiable_combinations"] = Json::array();
+  for (const noise::Combination& c : r.combinations) {
+    j["identifiable_combinations"].push_back({{"combination", c.text}});
+    put(j["identifiable_combinations"].back(), "relative_sd", c.relative_sd);
+  }
+  j["remarks"] = r.remarks;
+  j["classical"] = classical_json(r.reading, axis.axis.sensor);
+  j["candidates"] = Json::array();
+  for (std::size_t i = 0; i < r.candidates.size(); ++i)
+    j["candidates"].push_back(candidate_json(r.candidates[i], i == r.chosen));
+  j["innovations"] = {{"autocorrelation", r.whiteness.autocorrelation}, {"p_value", r.whiteness.p_value}};
+  j["outliers"] = outliers_json(r);
+  j["allan"] = Json::array();
+  for (const noise::AllanCurve& curve : r.curves) j["allan"].push_back(curve_json(curve));
+  if (!r.band.tau.empty()) j["allan_band"] = band_json(r.band);
+  put(j, "common_parameters_p_value", r.common_parameters_p);
+  if (!axis.own.empty()) j["records_alone"] = own_json(axis);
+  j["seconds"] = r.seconds;
+  return j;
+}
+
+}  // namespace
+
+std::string calibration_json(const CalibrationConfig& config, const CalibrationResult& result) {
+  Json j = {{"schema", "coast.calibration/1"}, {"sensor", config.sensor}, {"rate_hz", 1.0 / result.interval}};
+  j["records"] = Json::array();
+  for (const ReadRecord& r : result.records)
+    j["records"].push_back(
+        {{"source", r.source}, {"samples", r.samples}, {"duration_s", r.duration}, {"holes", r.holes}, {"remarks", r.remarks}});
+  j["events"] = Json::array();
+  for (const record::Event& event : result.events)
+    j["events"].push_back({{"severity", event.severity == record::Event::Severity::kWarning ? "warning" : "info"},
+                           {"kind", event.kind},
+                           {"text", event.text},
+                           {"count", event.count}});
+  j["axes"] = Json::array();
+  for (const CalibratedAxis& axis : result.axes) j["axes"].push_back(axis_json(axis));
+  j["files"] = {{"error_model", "error_model.yaml"}, {"report", "report.html"}};
+  return j.dump(1) + "\n";
+}
+
+}  // namespace coast::cli

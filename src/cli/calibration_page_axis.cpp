@@ -1,0 +1,173 @@
+// One axis: tables, what it cannot tell, and its panels in order.
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "calibration_page_parts.hpp"
+#include "calibration_units.hpp"
+#include "page_parts.hpp"
+
+namespace coast::cli {
+
+namespace {
+
+using report::Verdict;
+
+std::string optional_figure(const std::optional<double>& value) {
+  return value && std::isfinite(*value) ? figure(*value) : "not bounded";
+}
+
+report::Note outlier_note(const noise::AxisCalibration& r) {
+  const noise::Outlier& worst =
+      *std::ranges::max_element(r.outliers, {}, [](const noise::Outlier& o) { return std::abs(o.sigmas); });
+  return {report::Note::Kind::kWarning, fmt::format("{} outlier{}", r.outliers.size(), r.outliers.size() == 1 ? "" : "s"),
+          fmt::format("Standardised innovations beyond what one clean record in a hundred shows; the largest, {:.1f} sigma, at "
+                      "{:.2f} s. They were {}.",
+                      worst.sigmas, worst.time_s,
+                      r.outliers_excluded ? "left out and everything was estimated again"
+                                          : "kept; `outliers: exclude` leaves them out")};
+}
+
+std::string lead_of(const CalibratedAxis& axis) {
+  const noise::AxisCalibration& r = axis.result;
+  const noise::Candidate& best = r.best();
+  std::string text =
+      fmt::format("{} of {} candidates, with the {}. Log-likelihood {:.1f}.", best.model.name(), r.candidates.size(),
+                  r.candidates.size() == 1 ? "processes stated" : "best criterion", best.fit.log_likelihood);
+  if (!r.band.tau.empty())
+    text += r.band.inside ? " The Allan curve is inside the simultaneous 95 % band of the estimate."
+                          : " The Allan curve leaves the simultaneous 95 % band of the estimate.";
+  if (r.common_parameters_p)
+    text += fmt::format(" One set of parameters for all records against one for each: p = {:.2g}.", *r.common_parameters_p);
+  return text;
+}
+
+}  // namespace
+
+report::Table parameter_table(const CalibratedAxis& axis) {
+  report::Table table;
+  table.id = id_of(axis) + "-parameters";
+  table.title = "Parameters";
+  table.caption =
+      "Interval: profile likelihood, or bootstrap where it was asked for; not bounded: the likelihood does not fall far "
+      "enough. "
+      "Bound: the Cramer-Rao standard deviation. Last: how long a record would have to be to know the value to 25 %.";
+  table.columns = {
+      {"parameter", "", false},      {"value", ""}, {"unit", "", false}, {"95 % from", ""}, {"to", ""}, {"bound", "%"},
+      {"record for 25 %", "", false}};
+  for (std::size_t i = 0; i < axis.result.parameters.size(); ++i) {
+    const noise::ParameterEstimate& p = axis.result.parameters[i];
+    const SheetValue v = sheet_value(axis.result.best().model, i, axis.axis.sensor, p);
+    const bool bounded = v.lower.has_value() && v.upper.has_value();
+    std::vector<report::Cell> row = cells({v.name, figure(v.value), v.unit, optional_figure(v.lower), optional_figure(v.upper),
+                                           optional_figure(100.0 * v.relative_bound), duration_text(p.duration_for_quarter)});
+    if (!bounded) row[v.lower ? 4 : 3].verdict = Verdict::kWarn;
+    table.rows.push_back(std::move(row));
+  }
+  return table;
+}
+
+report::Table candidate_table(const CalibratedAxis& axis) {
+  const noise::AxisCalibration& r = axis.result;
+  double most = -std::numeric_limits<double>::infinity();
+  double bic = std::numeric_limits<double>::infinity();
+  double aicc = bic;
+  bool held_out = false;
+  for (const noise::Candidate& c : r.candidates) {
+    most = std::max(most, c.fit.log_likelihood);
+    bic = std::min(bic, c.bic);
+    aicc = std::min(aicc, c.aicc);
+    held_out = held_out || c.held_out;
+  }
+  report::Table table;
+  table.id = id_of(axis) + "-candidates";
+  table.title = "Candidates";
+  table.caption =
+      "Differences to the largest log-likelihood and to the smallest criteria. Degenerate: a variance went to zero, so the sum "
+      "without that process says the same.";
+  table.columns = {{"sum of processes", "", false}, {"parameters", ""}, {"log-likelihood", ""}, {"BIC", ""}, {"AICc", ""}};
+  if (held_out) table.columns.push_back({"held out, per sample", ""});
+  table.columns.push_back({"remark", "", false});
+  for (std::size_t i = 0; i < r.candidates.size(); ++i) {
+    const noise::Candidate& c = r.candidates[i];
+    const auto difference = [](double value, double reference) {
+      return std::isfinite(value) ? decimals(value - reference, 1) : std::string("none");
+    };
+    std::vector<report::Cell> row =
+        cells({c.model.name(), fmt::format("{}", c.parameters), difference(c.fit.log_likelihood, most), difference(c.bic, bic),
+               difference(c.aicc, aicc)});
+    if (held_out) row.push_back({c.held_out ? fmt::format("{:.6f}", *c.held_out) : "none"});
+    row.push_back({i == r.chosen  ? "chosen"
+                   : c.degenerate ? "degenerate"
+                                  : "",
+                   i == r.chosen ? Verdict::kGood : Verdict::kNone});
+    table.rows.push_back(std::move(row));
+  }
+  return table;
+}
+
+std::optional<report::Table> combination_table(const CalibratedAxis& axis) {
+  if (axis.result.combinations.size() < 2) return {};
+  report::Table table;
+  table.id = id_of(axis) + "-combinations";
+  table.title = "What the record knows";
+  table.caption =
+      "Directions of the information matrix, from the best known to the least: products of powers of the parameters.";
+  table.columns = {{"combination", "", false}, {"known to", "%"}};
+  for (const noise::Combination& c : axis.result.combinations)
+    table.rows.push_back(cells({c.text, std::isfinite(c.relative_sd) ? figure(100.0 * c.relative_sd) : "nothing known"}));
+  return table;
+}
+
+report::Section axis_section(const CalibrationConfig& config, const CalibratedAxis& axis) {
+  const noise::AxisCalibration& r = axis.result;
+  report::Section section;
+  section.id = id_of(axis);
+  section.title = axis.axis.title();
+  section.lead = lead_of(axis);
+  for (const std::string& remark : r.remarks) section.notes.push_back({report::Note::Kind::kInfo, "", remark});
+  if (!r.outliers.empty()) section.notes.push_back(outlier_note(r));
+  section.tables.push_back(parameter_table(axis));
+  if (auto table = combination_table(axis)) section.tables.push_back(std::move(*table));
+  section.tables.push_back(candidate_table(axis));
+  section.panels.push_back(allan_panel(axis));
+  add_restitution(axis, config.common.seed, section);
+  const auto add = [&](std::optional<report::Panel> panel) {
+    if (panel) section.panels.push_back(std::move(*panel));
+  };
+  add(components_panel(axis));
+  add(records_panel(axis));
+  add(whiteness_panel(axis));
+  add(search_panel(axis));
+  return section;
+}
+
+std::string id_of(const CalibratedAxis& axis) {
+  return fmt::format("{}-{}", axis.axis.sensor_name(), axis.axis.axis_name());
+}
+
+report::Tone tone_of(const CalibratedAxis& axis) {
+  return kComponentTones[static_cast<std::size_t>(axis.axis.axis)];
+}
+
+std::string record_name(const noise::StaticSignal& signal) {
+  std::string name = std::filesystem::path(signal.source).filename().string();
+  return name.substr(0, name.find('.', 1));
+}
+
+std::string duration_text(double seconds) {
+  if (!std::isfinite(seconds)) return "no length";
+  if (seconds < 600.0) return figure(seconds) + " s";
+  if (seconds < 2.0 * 86400.0) return figure(seconds / 3600.0) + " h";
+  return figure(seconds / 86400.0) + " d";
+}
+
+std::string figure(double value) {
+  const double size = std::abs(value);
+  if (size > 0.0 && (size < 1e-3 || size >= 1e6)) return fmt::format("{:.2e}", value);
+  return number(value);
+}
+
+}  // namespace coast::cli
