@@ -58,8 +58,13 @@ CalibrationRecord record_from(const Node& node) {
 
 std::vector<std::string> estimable_names() {
   std::vector<std::string> names;
-  for (const noise::Registration& r : noise::registry())
-    if (r.estimable != nullptr) names.emplace_back(r.name);
+  for (const noise::Registration& r : noise::registry()) {
+    if (r.estimable == nullptr) continue;
+    if (r.name == "ar")  // has an order
+      for (int order = 1; order <= 4; ++order) names.push_back(fmt::format("ar({})", order));
+    else
+      names.emplace_back(r.name);
+  }
   return names;
 }
 

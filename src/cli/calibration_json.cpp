@@ -17,7 +17,8 @@ using Json = nlohmann::ordered_json;
 constexpr std::size_t kMostOutliers = 200;  // listed one by one
 
 void put(Json& j, const char* key, const std::optional<double>& value) {
-  if (value && std::isfinite(*value)) j[key] = *value;
+  constexpr double kAsGoodAsInfinite = 1e100;  // an eigenvalue that is zero but for rounding
+  if (value && std::abs(*value) < kAsGoodAsInfinite) j[key] = *value;
 }
 
 Json parameter_json(const CalibratedAxis& axis, std::size_t i) {

@@ -43,16 +43,18 @@ std::vector<std::array<double, 3>> levels_of(const std::vector<const CalibratedA
   return levels;
 }
 
-// Slopes are drawn anew with every recording, so what a mission has to expect of its own is their root mean square.
+// Slopes are drawn anew with every recording, so what a mission has to expect of its own is their root mean square. What the
+// estimates' own variances account for is not there.
 std::string rate_ramp(const CalibratedAxis& axis) {
   double sum = 0.0;
   std::string list;
   const char* sheet = sheet_units(axis.axis.sensor).rate_ramp;
   for (const noise::MeanEstimate& mean : axis.result.means) {
-    sum += mean.value(1) * mean.value(1);
+    sum += mean.value(1) * mean.value(1) - mean.covariance(1, 1);
     list += fmt::format("{}{:.3g} +- {:.2g}", list.empty() ? "" : ", ", in_unit(mean.value(1), sheet),
                         in_unit(std::sqrt(mean.covariance(1, 1)), sheet));
   }
+  if (!(sum > 0.0)) return fmt::format("    # drift of the records {} {}: none beyond its uncertainty\n", list, sheet);
   const double rms = std::sqrt(sum / static_cast<double>(axis.result.means.size()));
   return fmt::format("    # drift of the records {} {}\n    - {{process: rate_ramp, coefficient: {:.17g}, unit: {}}}\n", list,
                      sheet, rms, axis.axis.sensor == Sensor::kGyro ? "rad/s^2" : "m/s^3");
@@ -61,7 +63,7 @@ std::string rate_ramp(const CalibratedAxis& axis) {
 std::string axis_yaml(const CalibratedAxis& axis) {
   const noise::Candidate& best = axis.result.best();
   std::string text = fmt::format("    # {}\n", best.model.name());
-  const auto processes = best.model.processes(best.fit.u, axis.axis.sensor);
+  const auto processes = best.model.processes(best.fit.u, {axis.axis.sensor, axis.signals.front().interval});
   for (std::size_t i = 0; i < processes.size(); ++i)
     text += fmt::format("    # {}\n    - {}\n", comment_of(axis, best.model.terms()[i]), processes[i]->yaml());
   if (best.model.mean() == noise::Mean::kLevelAndDrift) text += rate_ramp(axis);

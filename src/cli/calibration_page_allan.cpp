@@ -58,7 +58,7 @@ report::Series model_series(const noise::AllanCurve& curve, const char* unit, co
 void add_model(const CalibratedAxis& axis, const char* unit, report::Plot& plot) {
   const noise::Candidate& best = axis.result.best();
   const noise::AllanCurve& curve = axis.result.curves.front();
-  const auto processes = best.model.processes(best.fit.u, axis.axis.sensor);
+  const auto processes = best.model.processes(best.fit.u, {axis.axis.sensor, axis.signals.front().interval});
   const bool drifts = best.model.mean() == noise::Mean::kLevelAndDrift && !axis.result.means.empty();
   const double slope = drifts ? axis.result.means.front().value(1) : 0.0;
   // IEEE Std 952-1997 annex C: a ramp R t has the deviation R tau / sqrt(2).

@@ -109,6 +109,7 @@ report::Table candidate_table(const CalibratedAxis& axis) {
 }
 
 std::optional<report::Table> combination_table(const CalibratedAxis& axis) {
+  constexpr double kNothing = 10.0;  // of the value itself
   if (axis.result.combinations.size() < 2) return {};
   report::Table table;
   table.id = id_of(axis) + "-combinations";
@@ -117,7 +118,7 @@ std::optional<report::Table> combination_table(const CalibratedAxis& axis) {
       "Directions of the information matrix, from the best known to the least: products of powers of the parameters.";
   table.columns = {{"combination", "", false}, {"known to", "%"}};
   for (const noise::Combination& c : axis.result.combinations)
-    table.rows.push_back(cells({c.text, std::isfinite(c.relative_sd) ? figure(100.0 * c.relative_sd) : "nothing known"}));
+    table.rows.push_back(cells({c.text, c.relative_sd < kNothing ? figure(100.0 * c.relative_sd) : "nothing known"}));
   return table;
 }
 

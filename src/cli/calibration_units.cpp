@@ -16,18 +16,25 @@ namespace {
 struct Conversion {
   enum class Kind { kRoot, kInverse, kPlain } kind = Kind::kPlain;
   const char* unit = "";  ///< of the result; empty: SI, or none
-  const char* quantity = "";
 };
 
 Conversion conversion_of(std::string_view unit, noise::Sensor sensor) {
   const SheetUnits& sheet = sheet_units(sensor);
   using Kind = Conversion::Kind;
-  if (unit == "signal^2/Hz") return {Kind::kRoot, sheet.white_noise, "density"};
-  if (unit == "signal^2") return {Kind::kRoot, sheet.signal, "sigma"};
-  if (unit == "signal^2/s") return {Kind::kRoot, sheet.rate_random_walk, "density"};
-  if (unit == "signal^2 s^2") return {Kind::kRoot, sheet.integral, "step over sqrt(12)"};
-  if (unit == "1/s") return {Kind::kInverse, "s", "correlation time"};
+  if (unit == "signal^2/Hz") return {Kind::kRoot, sheet.white_noise};
+  if (unit == "signal^2") return {Kind::kRoot, sheet.signal};
+  if (unit == "signal^2/s") return {Kind::kRoot, sheet.rate_random_walk};
+  if (unit == "(signal s)^2") return {Kind::kRoot, sheet.integral};
+  if (unit == "1/s") return {Kind::kInverse, "s"};
   return {};
+}
+
+/// "sigma" of "sigma2", "correlation time" of "beta".
+std::string quantity_of(const noise::ParameterInfo& info, Conversion::Kind kind) {
+  std::string name(info.name);
+  if (kind == Conversion::Kind::kInverse) return "correlation time";
+  if (kind == Conversion::Kind::kRoot && name.back() == '2') name.pop_back();
+  return name == "q" ? "Q" : name;
 }
 
 double convert(const Conversion& conversion, double si) {
@@ -61,7 +68,7 @@ SheetValue sheet_value(const noise::SumModel& model, std::size_t i, noise::Senso
   const Conversion conversion = conversion_of(info.unit, sensor);
   SheetValue value;
   const bool plain = conversion.kind == Conversion::Kind::kPlain;
-  value.name = fmt::format("{} {}", term_name(model, term_of(model, i)), plain ? std::string(info.name) : conversion.quantity);
+  value.name = fmt::format("{} {}", term_name(model, term_of(model, i)), quantity_of(info, conversion.kind));
   value.unit = plain ? si_unit_of(info.unit, sensor) : conversion.unit;
   value.value = convert(conversion, estimate.value);
   if (estimate.lower) value.lower = convert(conversion, *estimate.lower);
@@ -72,10 +79,13 @@ SheetValue sheet_value(const noise::SumModel& model, std::size_t i, noise::Senso
 }
 
 std::string si_unit_of(std::string_view unit, noise::Sensor sensor) {
+  const bool gyro = sensor == noise::Sensor::kGyro;
+  if (unit == "1") return "";
+  if (unit == "(signal s)^2") return gyro ? "rad^2" : "(m/s)^2";
   std::string text(unit);
   const auto at = text.find("signal");
   if (at == std::string::npos) return text;
-  return text.replace(at, 6, sensor == noise::Sensor::kGyro ? "(rad/s)" : "(m/s^2)");
+  return text.replace(at, 6, gyro ? "(rad/s)" : "(m/s^2)");
 }
 
 std::string term_name(const noise::SumModel& model, std::size_t term) {
