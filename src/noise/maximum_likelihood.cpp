@@ -14,6 +14,16 @@ std::size_t search_block(const Likelihood& likelihood, const std::vector<double>
   return std::min(enough, slow_block(likelihood.model(), u, likelihood.interval()));
 }
 
+/// Variances that start at nothing are lifted to where the likelihood's slope in their logarithm can be told from zero: at
+/// nothing every start is a stationary point.
+void lift_from_zero(const Likelihood& likelihood, const std::vector<Interval>& box, std::vector<double>& u) {
+  constexpr double kNothing = 15.0;  // the range spans 42
+  constexpr double kSmall = 15.0;    // below the upper end: 3e-4 of the signal
+  for (std::size_t i = 0; i < u.size(); ++i)
+    if (likelihood.model().parameter(i).kind == ParameterInfo::Kind::kVariance && u[i] < box[i].lower + kNothing)
+      u[i] = std::clamp(box[i].upper - kSmall, box[i].lower, box[i].upper);
+}
+
 SearchResult search(const Likelihood& likelihood, const std::vector<double>& start, const std::vector<Interval>& box) {
   constexpr int kIterations = 200;
   const double gradient_tolerance = 1e-3;
@@ -33,6 +43,7 @@ Fit fit_maximum_likelihood(const Likelihood& likelihood, const std::vector<doubl
   Fit fit;
   fit.u = start;
   for (std::size_t i = 0; i < box.size(); ++i) fit.u[i] = std::clamp(fit.u[i], box[i].lower, box[i].upper);
+  lift_from_zero(likelihood, box, fit.u);
   const std::size_t block = options.pyramid ? search_block(likelihood, fit.u) : 1;
   Eigen::MatrixXd excess;
   if (block > 1) {
@@ -45,6 +56,7 @@ Fit fit_maximum_likelihood(const Likelihood& likelihood, const std::vector<doubl
     const SearchResult found = search(likelihood, fit.u, box);
     fit.u = found.u;
     fit.passes += found.evaluations;
+    for (const double value : found.trace) fit.trace.push_back(-value);
   }
   polish(likelihood, box, excess, options.tolerance, fit);
   return fit;

@@ -27,8 +27,9 @@ void score(const Likelihood& likelihood, Candidate& candidate) {
   candidate.parameters = static_cast<int>(candidate.model.parameters()) +
                          coefficients(candidate.model.mean()) * static_cast<int>(likelihood.records().size());
   const auto k = static_cast<double>(candidate.parameters);
-  candidate.bic = -2.0 * candidate.fit.log_likelihood + k * std::log(n);
-  candidate.aicc = -2.0 * candidate.fit.log_likelihood + 2.0 * k + 2.0 * k * (k + 1.0) / std::max(1.0, n - k - 1.0);
+  candidate.at_mean = likelihood.value(candidate.fit.u).at_mean;
+  candidate.bic = -2.0 * candidate.at_mean + k * std::log(n);
+  candidate.aicc = -2.0 * candidate.at_mean + 2.0 * k + 2.0 * k * (k + 1.0) / std::max(1.0, n - k - 1.0);
 }
 
 /// Each half scored with what the other was fitted to.
@@ -41,7 +42,7 @@ double held_out_score(const std::vector<StaticSignal>& records, const SumModel& 
     for (const std::size_t fitted : {std::size_t{0}, std::size_t{1}}) {
       const Fit fit = fit_maximum_likelihood(Likelihood({parts[fitted]}, model), u);
       const Likelihood other({parts[1 - fitted]}, model);
-      sum += other.value(fit.u).log_likelihood;
+      sum += other.value(fit.u).at_mean;
       samples += other.samples();
     }
   }

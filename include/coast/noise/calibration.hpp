@@ -31,6 +31,8 @@ struct CalibrationOptions {
 struct Candidate {
   SumModel model;
   Fit fit;
+  double at_mean = 0.0;  ///< log-likelihood maximised over level and drift: that of `fit` is restricted, and sums that differ
+                         ///< in their mean cannot be compared by it
   int parameters = 0;  ///< of the processes and of the means
   double bic = 0.0;
   double aicc = 0.0;
