@@ -97,6 +97,13 @@ void add_tiles(const CalibrationResult& result, Sensor sensor, report::Page& pag
           ? "Angle random walk, as it is read from the stretch of the Allan curve with slope -1/2; x, y, z."
           : "Velocity random walk, as it is read from the stretch of the Allan curve with slope -1/2; x, y, z.";
   page.tiles.push_back(axis_tile(result, sensor, fmt::format("{} bias instability", name), units.signal, bias_instability_of));
+  // Where no axis shows a floor, once is enough.
+  const auto shown = [](const CalibratedAxis* axis) { return axis->result.reading.bias_instability.has_value(); };
+  if (std::ranges::none_of(result.of(sensor), shown)) {
+    std::string& value = page.tiles.back().value;
+    for (auto at = value.find("< "); at != std::string::npos; at = value.find("< ")) value.erase(at, 2);
+    page.tiles.back().label += ", below";
+  }
   page.tiles.back().explanation =
       "Lowest point of the Allan curve over 0.664; where the curve still falls at its end, or has another slope, it is below.";
   page.tiles.push_back(model_tile(result, sensor));

@@ -75,6 +75,17 @@ void add_model(const CalibratedAxis& axis, const char* unit, report::Plot& plot)
   if (drifts) part("drift", ramp);
 }
 
+/// A correlation time below two intervals: samples are values at instants, the curve is of means.
+bool faster_than_samples(const CalibratedAxis& axis) {
+  const noise::Candidate& best = axis.result.best();
+  for (std::size_t i = 0; i < best.fit.u.size(); ++i) {
+    const noise::ParameterInfo info = best.model.parameter(i);
+    if (info.kind == noise::ParameterInfo::Kind::kRate && info.value(best.fit.u[i]) * axis.signals.front().interval > 0.5)
+      return true;
+  }
+  return false;
+}
+
 report::Table classical_table(const CalibrationResult& result, noise::Sensor sensor) {
   const SheetUnits& units = sheet_units(sensor);
   report::Table table;
@@ -131,6 +142,10 @@ report::Panel allan_panel(const CalibratedAxis& axis) {
   panel.caption =
       "The record with its 95 % intervals, the fitted sum and each of its processes. Good: the record stays inside the grey "
       "band, which 95 of 100 realisations of the estimate do not leave anywhere.";
+  if (faster_than_samples(axis))
+    panel.caption +=
+        " A process is faster than the samples: the model's curve, of continuous time, and the median of the realisations part "
+        "at short averaging times.";
   report::Plot& plot = allan_plot(panel, axis, unit);
   if (!r.band.tau.empty()) {
     report::Series series;

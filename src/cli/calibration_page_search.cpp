@@ -38,11 +38,20 @@ std::optional<report::Panel> search_panel(const CalibratedAxis& axis) {
   if (of_em.x.empty() && of_direct.x.empty()) return {};
   report::Panel panel = report::xy_panel(
       id_of(axis) + "-search", "Way to the optimum", {"iteration", "", report::Axis::Scale::kLinear, {}, {}},
-      {"log-likelihood below the optimum", "", report::Axis::Scale::kLog, {}, {}},
+      {"below the optimum", "", report::Axis::Scale::kLog, {}, {}},
       fmt::format(
           "The direct search took {} passes over the record, EM {} and did {}. Below 0.1 the estimate would not change in "
           "any digit that matters.",
           direct.passes, em.passes, em.converged ? "converge" : "not converge in that"));
+  // Two decades at least, or a logarithmic axis has no numbers.
+  double least = std::numeric_limits<double>::infinity();
+  double greatest = 0.0;
+  for (const report::Series* series : {&of_em, &of_direct})
+    for (const double y : series->y) {
+      least = std::min(least, y);
+      greatest = std::max(greatest, y);
+    }
+  panel.plot().y.range.emplace(std::min(0.5 * least, 0.01 * greatest), 2.0 * greatest);
   const auto add = [&](const char* name, report::Series series, report::Tone tone) {
     if (series.x.empty()) return;
     report::add_points(panel.plot(), name, series, tone).radius_px = 2.5;
@@ -62,6 +71,8 @@ std::optional<report::Panel> whiteness_panel(const CalibratedAxis& axis) {
       fmt::format("Good: 19 of 20 inside the bounds; p = {:.2g} that white innovations would look like this (Ljung and Box). A "
                   "long record shows what is too small to matter: see how large the correlations are.",
                   whiteness.p_value));
+  for (std::size_t lag = 5; lag <= whiteness.autocorrelation.size(); lag += 5)
+    panel.plot().x.ticks.push_back({static_cast<double>(lag), fmt::format("{}", lag)});
   report::Series stems;
   double largest = 0.0;
   for (std::size_t i = 0; i < whiteness.autocorrelation.size(); ++i) {

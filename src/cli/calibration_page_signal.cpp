@@ -86,7 +86,7 @@ void add_restitution(const CalibratedAxis& axis, std::uint64_t seed, report::Sec
       fmt::format("Means over {}: the record among {} realisations of the estimate. Good: it is one of them, no calmer and no "
                   "wilder.",
                   duration_text(static_cast<double>(factor) * record.interval), kRealisations));
-  report::add_line(panel.plot(), "realisations", std::move(many), report::Tone::kMuted).width_px = 0.7;
+  report::add_line(panel.plot(), "realisations", std::move(many), report::Tone::kFaint).width_px = 0.8;
   report::Series own;
   append(means(record), unit, own);
   report::add_line(panel.plot(), "record", std::move(own), tone_of(axis)).width_px = 1.8;

@@ -123,13 +123,9 @@ AxisCalibration calibrate(const std::vector<StaticSignal>& given, const Calibrat
       fit_em(likelihood, fit_curve(detrended_curve(records.front()), best.model, likelihood.scale(), CurveFit::kWaveletMoments),
              {.iterations = kEmPasses});
   result.means = likelihood.value(best.fit.u).means;
-  Eigen::MatrixXd information =
-      Eigen::MatrixXd::Zero(static_cast<Eigen::Index>(best.fit.u.size()), static_cast<Eigen::Index>(best.fit.u.size()));
+  const Eigen::MatrixXd information = record_information(likelihood, best.fit.u);
   double duration = 0.0;
-  for (const StaticSignal& record : records) {
-    information += expected_information(best.model, best.fit.u, record.interval, record.length());
-    duration += record.duration();
-  }
+  for (const StaticSignal& record : records) duration += record.duration();
   const Eigen::MatrixXd covariance = cramer_rao(information);
   result.parameters = parameters_of(likelihood, best.fit, covariance, options);
   if (options.bootstrap > 0) bootstrap_intervals(likelihood, best.fit, options, result.parameters);

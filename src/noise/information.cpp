@@ -4,9 +4,9 @@
 #include <cmath>
 #include <limits>
 
-#include "block_rule.hpp"
 #include "coast/noise/chi_square.hpp"
 #include "coast/noise/uncertainty.hpp"
+#include "short_likelihood.hpp"
 
 namespace coast::noise {
 
@@ -134,24 +134,33 @@ class InformationFilter {
   Matrix information_;
 };
 
+Matrix run_filter(const SumModel& model, const std::vector<double>& u, const SampleStep& step, Mean mean,
+                  std::uint64_t values) {
+  const SampleBlock wide = with_mean_states(model.block(u, step), mean, static_cast<double>(values));
+  std::vector<SampleBlock> derivatives;
+  for (const SampleBlock& derivative : model.derivatives(u, step)) derivatives.push_back(widened(derivative, wide.h.size()));
+  return InformationFilter(wide, derivatives).run(values);
+}
+
 }  // namespace
 
 Matrix expected_information(const SumModel& model, const std::vector<double>& u, double interval, std::uint64_t samples) {
   constexpr double kMost = 20000.0;
   const auto all = static_cast<double>(samples);
-  const std::size_t block =
-      std::min(slow_block(model, u, interval), std::max<std::size_t>(1, static_cast<std::size_t>(all / kMost)));
-  const double coarse = interval * static_cast<double>(block);
+  const std::size_t block = model.has_averages() ? std::max<std::size_t>(1, static_cast<std::size_t>(all / kMost)) : 1;
+  const SampleStep step(interval, block);
   const std::uint64_t blocks = samples / block;
-  const SampleBlock wide = with_mean_states(model.block(u, coarse), model.mean(), static_cast<double>(blocks));
-  std::vector<SampleBlock> derivatives;
-  for (const SampleBlock& derivative : model.derivatives(u, coarse)) derivatives.push_back(widened(derivative, wide.h.size()));
-  Matrix information = InformationFilter(wide, derivatives).run(blocks);
-  // Within blocks the scatter is that of white noise alone: log of its variance has information 1/2 per degree of freedom.
-  for (const SumModel::Term& term : model.terms())
-    if (term.states == 0)
-      information(static_cast<Eigen::Index>(term.parameter), static_cast<Eigen::Index>(term.parameter)) +=
-          0.5 * (all - static_cast<double>(blocks));
+  Matrix information = run_filter(model, u, step, model.mean(), blocks);
+  // Within a block: what its samples tell beside their mean, which stands for itself.
+  if (block > 1) information += static_cast<double>(blocks) * run_filter(model, u, SampleStep(interval), Mean::kLevel, block);
+  return information;
+}
+
+Matrix record_information(const Likelihood& likelihood, const std::vector<double>& u) {
+  const auto p = static_cast<Eigen::Index>(u.size());
+  Matrix information = Matrix::Zero(p, p);
+  for (const Detrended& record : likelihood.records())
+    information += expected_information(likelihood.model(), u, likelihood.interval(), record.signal.length());
   return information;
 }
 

@@ -125,7 +125,8 @@ BlockMoments of_term(const BlockMoments& all, const SumModel::Term& term) {
 
 }  // namespace
 
-Likelihood::Likelihood(const std::vector<StaticSignal>& records, SumModel model) : model_(std::move(model)) {
+Likelihood::Likelihood(const std::vector<StaticSignal>& records, SumModel model, std::size_t averaged)
+    : model_(std::move(model)), averaged_(averaged) {
   for (const StaticSignal& record : records) {
     if (record.values.empty()) throw std::invalid_argument("Likelihood: a record without samples");
     if (record.interval != records.front().interval)
@@ -152,7 +153,7 @@ SignalScale Likelihood::scale() const {
 }
 
 LikelihoodValue Likelihood::value(const std::vector<double>& u) const {
-  const SampleBlock block = model_.block(u, interval());
+  const SampleBlock block = model_.block(u, step());
   LikelihoodValue sum;
   for (const Detrended& record : records_) {
     const Concentrated fit = concentrate(block, record.signal, model_.mean());
@@ -166,8 +167,8 @@ LikelihoodValue Likelihood::value(const std::vector<double>& u) const {
 // The mean maximises the likelihood, so the gradient at a fixed mean is that of the maximum over it; log |X'V^-1 X| has its
 // own.
 LikelihoodSlope Likelihood::slope(const std::vector<double>& u) const {
-  const SampleBlock block = model_.block(u, interval());
-  const std::vector<SampleBlock> derivatives = model_.derivatives(u, interval());
+  const SampleBlock block = model_.block(u, step());
+  const std::vector<SampleBlock> derivatives = model_.derivatives(u, step());
   const auto p = static_cast<Eigen::Index>(u.size());
   LikelihoodSlope sum{0.0, Eigen::VectorXd::Zero(p), Eigen::MatrixXd::Zero(p, p)};
   for (const Detrended& record : records_) {
@@ -188,7 +189,7 @@ LikelihoodSlope Likelihood::slope(const std::vector<double>& u) const {
 }
 
 Likelihood::Expectation Likelihood::expectation(const std::vector<double>& u, std::vector<double>& memory) const {
-  const SampleBlock block = model_.block(u, interval());
+  const SampleBlock block = model_.block(u, step());
   Expectation result;
   const Eigen::Index n = block.h.size();
   BlockMoments sum;
@@ -206,7 +207,7 @@ Likelihood::Expectation Likelihood::expectation(const std::vector<double>& u, st
 }
 
 std::vector<double> Likelihood::standardised_innovations(const std::vector<double>& u, std::size_t record, double gate) const {
-  const SampleBlock block = model_.block(u, interval());
+  const SampleBlock block = model_.block(u, step());
   const StaticSignal& signal = records_.at(record).signal;
   return whitening_pass(block, signal, concentrate(block, signal, model_.mean()).curve, gate);
 }

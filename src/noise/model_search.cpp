@@ -2,22 +2,29 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "coast/record/error.hpp"
+#include "polish.hpp"
 
 namespace coast::noise {
 
 namespace {
 
-/// A variance that has gone to the lower end of its range, or a rate at an end: the process is not there, or another one.
-bool at_an_end(const SumModel& model, const SignalScale& scale, const std::vector<double>& u) {
+/// A process that the record does not want: without its variance the likelihood is the same, or its rate has gone to where it
+/// is another process.
+bool says_nothing(const ShortLikelihood& likelihood, const std::vector<Interval>& ranges, const SumModel& model,
+                  const std::vector<double>& u) {
   constexpr double kAtEnd = 1e-6;
-  constexpr double kNothing = 12.0;  // a factor of 1e5 above the lowest variance is still nothing
-  const std::vector<Interval> ranges = model.ranges(scale);
+  constexpr double kNothing = 0.02;  // of log-likelihood
+  const double value = likelihood.value(u);
   for (std::size_t i = 0; i < u.size(); ++i) {
     const ParameterInfo::Kind kind = model.parameter(i).kind;
-    if (kind == ParameterInfo::Kind::kVariance && u[i] < ranges[i].lower + kNothing) return true;
     if (kind == ParameterInfo::Kind::kRate && (u[i] < ranges[i].lower + kAtEnd || u[i] > ranges[i].upper - kAtEnd)) return true;
+    if (kind != ParameterInfo::Kind::kVariance) continue;
+    std::vector<double> without = u;
+    without[i] = ranges[i].lower;
+    if (value - likelihood.value(without) < kNothing) return true;
   }
   return false;
 }
@@ -27,7 +34,6 @@ void score(const Likelihood& likelihood, Candidate& candidate) {
   candidate.parameters = static_cast<int>(candidate.model.parameters()) +
                          coefficients(candidate.model.mean()) * static_cast<int>(likelihood.records().size());
   const auto k = static_cast<double>(candidate.parameters);
-  candidate.at_mean = likelihood.value(candidate.fit.u).at_mean;
   candidate.bic = -2.0 * candidate.at_mean + k * std::log(n);
   candidate.aicc = -2.0 * candidate.at_mean + 2.0 * k + 2.0 * k * (k + 1.0) / std::max(1.0, n - k - 1.0);
 }
@@ -71,6 +77,16 @@ std::vector<SumModel> sums_to_try(const CalibrationOptions& options) {
   return sums;
 }
 
+/// Every process of `part` is in `whole`, which has more.
+bool is_part_of(const SumModel& part, const SumModel& whole) {
+  if (part.mean() != whole.mean() || part.terms().size() >= whole.terms().size()) return false;
+  const auto count = [](const SumModel& model, const Estimable* process) {
+    return std::ranges::count(model.terms(), process, &SumModel::Term::process);
+  };
+  return std::ranges::all_of(
+      part.terms(), [&](const SumModel::Term& term) { return count(part, term.process) <= count(whole, term.process); });
+}
+
 /// What smaller sums found, with the process that is new at next to nothing, or in the middle of its range.
 std::vector<std::vector<double>> starts_from(const std::vector<Candidate>& smaller, const SumModel& model,
                                              const SignalScale& scale) {
@@ -100,24 +116,44 @@ std::vector<std::vector<double>> starts_from(const std::vector<Candidate>& small
   return starts;
 }
 
+/// Of a sum with a process that is not there, the likelihood is that of the sum without it.
+void take_from_smaller(const std::vector<Candidate>& smaller, const std::vector<StaticSignal>& records, Candidate& candidate) {
+  const Candidate* best = nullptr;
+  for (const Candidate& other : smaller)
+    if (is_part_of(other.model, candidate.model) && (best == nullptr || other.fit.log_likelihood > best->fit.log_likelihood))
+      best = &other;
+  if (best == nullptr) return;
+  candidate.fit.log_likelihood = best->fit.log_likelihood;
+  candidate.at_mean = best->at_mean;
+  score(Likelihood(records, candidate.model), candidate);
+}
+
 }  // namespace
 
 Candidate fit_candidate(const std::vector<StaticSignal>& records, const AllanCurve& curve, const SumModel& model,
                         const std::vector<std::vector<double>>& starts) {
+  constexpr double kTableTolerance = 1e-3;
   Candidate candidate;
   candidate.model = model;
   const Likelihood likelihood(records, model);
+  const ShortLikelihood shortened(likelihood);
   const SignalScale scale = likelihood.scale();
   std::vector<double> best = fit_curve(curve, model, scale, CurveFit::kWaveletMoments);
-  double value = likelihood.value(best).log_likelihood;
+  double value = shortened.value(best);
   for (const std::vector<double>& start : starts) {
-    const double there = likelihood.value(start).log_likelihood;
+    const double there = shortened.value(start);
     if (!(there > value)) continue;
     value = there;
     best = start;
   }
-  candidate.fit = fit_maximum_likelihood(likelihood, best);
-  candidate.degenerate = at_an_end(model, scale, candidate.fit.u);
+  candidate.fit = fit_maximum_likelihood(likelihood, best, {.polished = shortened.is_whole()});
+  candidate.degenerate = says_nothing(shortened, model.ranges(scale), model, candidate.fit.u);
+  if (!candidate.degenerate && !shortened.is_whole()) {
+    Fit& fit = candidate.fit;
+    polish([&](const std::vector<double>& u) { return likelihood.slope(u); }, model, box_of(likelihood, fit.u, {}),
+           excess_curvature(shortened, fit.u), kTableTolerance, fit);
+  }
+  candidate.at_mean = likelihood.value(candidate.fit.u).at_mean;
   score(likelihood, candidate);
   return candidate;
 }
@@ -132,7 +168,8 @@ std::vector<Candidate> fit_candidates(const std::vector<StaticSignal>& records, 
       options.progress("fitting sums of processes", static_cast<double>(candidates.size()) / static_cast<double>(sums.size()));
     candidates.push_back(fit_candidate(records, curve, model, starts_from(candidates, model, scale)));
     Candidate& last = candidates.back();
-    if (options.held_out || options.criterion == Criterion::kHeldOut)
+    if (last.degenerate) take_from_smaller(candidates, records, last);
+    if (!last.degenerate && (options.held_out || options.criterion == Criterion::kHeldOut))
       last.held_out = held_out_score(records, model, last.fit.u);
   }
   return candidates;
@@ -141,7 +178,7 @@ std::vector<Candidate> fit_candidates(const std::vector<StaticSignal>& records, 
 std::size_t choose(const std::vector<Candidate>& candidates, Criterion criterion) {
   const auto cost = [&](const Candidate& c) {
     if (!std::isfinite(c.fit.log_likelihood)) return std::numeric_limits<double>::infinity();
-    if (criterion == Criterion::kHeldOut) return -c.held_out.value();
+    if (criterion == Criterion::kHeldOut) return c.held_out ? -*c.held_out : std::numeric_limits<double>::infinity();
     return criterion == Criterion::kBic ? c.bic : c.aicc;
   };
   std::size_t best = 0;

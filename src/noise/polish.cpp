@@ -10,11 +10,11 @@ namespace {
 
 class Polish {
  public:
-  Polish(const Likelihood& likelihood, std::vector<Interval> box, Eigen::MatrixXd excess, Fit& fit)
-      : likelihood_(likelihood), box_(std::move(box)), excess_(std::move(excess)), fit_(fit) {}
+  Polish(const SlopeFunction& likelihood, const SumModel& model, std::vector<Interval> box, Eigen::MatrixXd excess, Fit& fit)
+      : likelihood_(likelihood), model_(model), box_(std::move(box)), excess_(std::move(excess)), fit_(fit) {}
 
   void run(double tolerance, int steps) {
-    LikelihoodSlope at = likelihood_.slope(fit_.u);
+    LikelihoodSlope at = likelihood_(fit_.u);
     ++fit_.passes;
     fit_.log_likelihood = at.log_likelihood;
     fit_.trace.push_back(at.log_likelihood);
@@ -29,7 +29,7 @@ class Polish {
         return;
       }
       const std::vector<double> next = moved(move);
-      LikelihoodSlope there = likelihood_.slope(next);
+      LikelihoodSlope there = likelihood_(next);
       ++fit_.passes;
       if (there.log_likelihood > at.log_likelihood) {
         damping = std::max(1e-9, 0.1 * damping);
@@ -87,7 +87,7 @@ class Polish {
   [[nodiscard]] std::vector<double> moved(const Eigen::VectorXd& move) const {
     const auto far_variance = [&](std::size_t i) {
       return std::abs(move(static_cast<Eigen::Index>(i))) > kFarthest &&
-             likelihood_.model().parameter(i).kind == ParameterInfo::Kind::kVariance;
+             model_.parameter(i).kind == ParameterInfo::Kind::kVariance;
     };
     double longest = kFarthest;
     for (std::size_t i = 0; i < fit_.u.size(); ++i)
@@ -102,7 +102,8 @@ class Polish {
     return next;
   }
 
-  const Likelihood& likelihood_;
+  const SlopeFunction& likelihood_;
+  const SumModel& model_;
   std::vector<Interval> box_;
   Eigen::MatrixXd excess_;
   Fit& fit_;
@@ -117,13 +118,13 @@ std::vector<Interval> box_of(const Likelihood& likelihood, const std::vector<dou
   return box;
 }
 
-void polish(const Likelihood& likelihood, const std::vector<Interval>& box, const Eigen::MatrixXd& excess, double tolerance,
-            Fit& fit) {
+void polish(const SlopeFunction& likelihood, const SumModel& model, const std::vector<Interval>& box,
+            const Eigen::MatrixXd& excess, double tolerance, Fit& fit) {
   constexpr int kSteps = 60;
-  Polish(likelihood, box, excess, fit).run(tolerance, kSteps);
+  Polish(likelihood, model, box, excess, fit).run(tolerance, kSteps);
 }
 
-Eigen::MatrixXd excess_curvature(const Likelihood& likelihood, const std::vector<double>& u) {
+Eigen::MatrixXd excess_curvature(const ShortLikelihood& likelihood, const std::vector<double>& u) {
   constexpr double kStep = 1e-3;
   const auto p = static_cast<Eigen::Index>(u.size());
   Eigen::MatrixXd hessian(p, p);

@@ -2,6 +2,7 @@
 // The last steps to an optimum of the likelihood. Private to the room.
 
 #include "coast/noise/estimators.hpp"
+#include "short_likelihood.hpp"
 
 namespace coast::noise {
 
@@ -13,10 +14,11 @@ namespace coast::noise {
 /// log-likelihood.
 /// @param excess  of the curvature over the information, known from block means; empty: taken as none
 /// @param fit     start in, optimum out; trace and passes are added to
-void polish(const Likelihood& likelihood, const std::vector<Interval>& box, const Eigen::MatrixXd& excess, double tolerance,
-            Fit& fit);
+using SlopeFunction = std::function<LikelihoodSlope(const std::vector<double>&)>;
+void polish(const SlopeFunction& likelihood, const SumModel& model, const std::vector<Interval>& box,
+            const Eigen::MatrixXd& excess, double tolerance, Fit& fit);
 
 /// Minus the Hessian of the log-likelihood by central differences of its gradient, less the information.
-[[nodiscard]] Eigen::MatrixXd excess_curvature(const Likelihood& likelihood, const std::vector<double>& u);
+[[nodiscard]] Eigen::MatrixXd excess_curvature(const ShortLikelihood& likelihood, const std::vector<double>& u);
 
 }  // namespace coast::noise

@@ -1,8 +1,8 @@
 #include <cmath>
 
-#include "block_rule.hpp"
 #include "coast/noise/uncertainty.hpp"
 #include "polish.hpp"
+#include "short_likelihood.hpp"
 
 namespace coast::noise {
 
@@ -31,7 +31,8 @@ class Profile {
     const std::vector<Interval> box = box_of(likelihood_, fit.u, fixed);
     for (std::size_t i = 0; i < box.size(); ++i) fit.u[i] = std::clamp(fit.u[i], box[i].lower, box[i].upper);
     constexpr double kTolerance = 5e-4;  // of log-likelihood: 3e-4 of the root
-    polish(likelihood_, box, {}, kTolerance, fit);
+    polish([this](const std::vector<double>& u) { return likelihood_.slope(u); }, likelihood_.model(), box, {}, kTolerance,
+           fit);
     nuisance_ = fit.u;
     distance_ = distance;
     return std::sqrt(2.0 * std::max(0.0, top_.log_likelihood - fit.log_likelihood));
@@ -107,24 +108,22 @@ std::optional<double> crossing(Profile profile, double guess, double farthest) {
 }  // namespace
 
 ProfileInterval profile_interval(const Likelihood& likelihood, const Fit& fit, std::size_t which) {
-  constexpr double kEnough = 8000.0;  // block means; the profile is the same for more
-  const std::size_t block = std::min(slow_block(likelihood.model(), fit.u, likelihood.interval()),
-                                     static_cast<std::size_t>(std::max(1.0, likelihood.samples() / kEnough)));
-  std::vector<StaticSignal> means;
-  for (const Detrended& record : likelihood.records()) means.push_back(block_means(record.signal, block));
-  const Likelihood coarse(means, likelihood.model());
+  const auto at = static_cast<Eigen::Index>(which);
+  const double sd = std::sqrt(cramer_rao(likelihood.slope(fit.u).information)(at, at));
+  // What is known well has a parabola for its logarithm, and of a long record block means no longer hold all of it.
+  constexpr double kManySamples = 40000.0;
+  constexpr double kSharp = 0.05;
+  const bool is_long = likelihood.samples() > kManySamples;
+  if (is_long && sd < kSharp) return {fit.u[which] - kRoot95 * sd, fit.u[which] + kRoot95 * sd};
+
+  // What is known badly is slow, and block means hold it.
+  constexpr double kEnough = 8000.0;
+  const std::optional<Likelihood> means = is_long ? on_block_means(likelihood, kEnough) : std::nullopt;
+  const Likelihood& coarse = means ? *means : likelihood;
   Fit top;
   top.u = fit.u;
-  polish(coarse, box_of(coarse, top.u, {}), {}, 1e-6, top);
-
-  const LikelihoodSlope slope = likelihood.slope(fit.u);
-  const auto at = static_cast<Eigen::Index>(which);
-  const double sd = std::sqrt(cramer_rao(slope.information)(at, at));
-  // White noise of a long record: its information is in the scatter within blocks, and so sharp that the interval is normal.
-  const SumModel::Term& term = *std::ranges::find_if(likelihood.model().terms(), [&](const SumModel::Term& t) {
-    return which >= t.parameter && which < t.parameter + t.parameters;
-  });
-  if (block > 1 && term.states == 0) return {fit.u[which] - kRoot95 * sd, fit.u[which] + kRoot95 * sd};
+  polish([&](const std::vector<double>& u) { return coarse.slope(u); }, likelihood.model(), box_of(coarse, top.u, {}), {}, 1e-6,
+         top);
 
   const Interval range = likelihood.model().ranges(likelihood.scale())[which];
   const double guess = std::isfinite(sd) ? std::clamp(kRoot95 * sd, 0.01, 2.0) : 1.0;

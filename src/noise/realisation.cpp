@@ -99,7 +99,7 @@ StaticSignal realisation(const SumModel& model, const std::vector<double>& u, do
 SmoothedComponents smoothed_components(const Likelihood& likelihood, const std::vector<double>& u, std::size_t record,
                                        std::size_t points) {
   const StaticSignal& signal = likelihood.records().at(record).signal;
-  const SampleBlock block = likelihood.model().block(u, likelihood.interval());
+  const SampleBlock block = likelihood.model().block(u, likelihood.step());
   const MeanCurve mean = mean_curve(likelihood, u, record);
   const auto stride = std::max<std::size_t>(1, static_cast<std::size_t>(signal.length()) / std::max<std::size_t>(1, points));
   SmoothedComponents result;

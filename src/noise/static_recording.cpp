@@ -27,7 +27,7 @@ Stretch stretch_of(const record::ImuRecording& imu, const RecordingPart& part) {
   if (samples.size() < 2) throw InputError({imu.source, 0, fmt::format("{} samples", samples.size()), "at least two", ""});
   const geo::GpsTime start = samples.front().t - samples.front().dt;
   const auto at = [&](double seconds) {
-    return static_cast<std::size_t>(std::ranges::lower_bound(samples, start + seconds, {}, &record::ImuSample::t) -
+    return static_cast<std::size_t>(std::ranges::upper_bound(samples, start + seconds, {}, &record::ImuSample::t) -
                                     samples.begin());
   };
   Stretch stretch{0, samples.size()};

@@ -4,6 +4,8 @@
 
 #include <algorithm>
 
+#include "kalman/fixed_model.hpp"
+
 namespace coast::noise {
 
 namespace {
@@ -12,15 +14,22 @@ std::span<const double> own(const std::vector<double>& u, const SumModel::Term& 
   return std::span(u).subspan(term.parameter, term.parameters);
 }
 
-void place(const SampleBlock& block, const SumModel::Term& term, SampleBlock& sum) {
-  const auto put = [&](const Eigen::MatrixXd& part, Eigen::MatrixXd& whole) {
-    whole.block(term.state, term.state, term.states, term.states) = part;
-  };
-  put(block.Phi, sum.Phi);
-  put(block.Q, sum.Q);
-  put(block.P1, sum.P1);
-  sum.h.segment(term.state, term.states) = block.h;
-  sum.white += block.white;
+/// Puts blocks beside each other on the diagonal.
+SampleBlock stacked(const std::vector<SampleBlock>& blocks) {
+  Eigen::Index states = 0;
+  for (const SampleBlock& block : blocks) states += block.h.size();
+  SampleBlock sum = SampleBlock::zero(states);
+  Eigen::Index at = 0;
+  for (const SampleBlock& block : blocks) {
+    const Eigen::Index n = block.h.size();
+    sum.Phi.block(at, at, n, n) = block.Phi;
+    sum.Q.block(at, at, n, n) = block.Q;
+    sum.P1.block(at, at, n, n) = block.P1;
+    sum.h.segment(at, n) = block.h;
+    sum.white += block.white;
+    at += n;
+  }
+  return sum;
 }
 
 }  // namespace
@@ -86,18 +95,31 @@ std::vector<double> SumModel::values(const std::vector<double>& u) const {
   return all;
 }
 
-SampleBlock SumModel::block(const std::vector<double>& u, double interval) const {
-  SampleBlock sum = SampleBlock::zero(states_);
-  for (const Term& term : terms_) place(term.process->block(own(u, term), interval), term, sum);
-  return sum;
+bool SumModel::has_averages() const {
+  Eigen::Index states = 0;
+  for (const Term& term : terms_) {
+    if (!term.process->has_averages()) return false;
+    const std::vector<double> any(term.parameters, 0.0);
+    states += term.process->block(any, SampleStep(1.0, 2)).h.size();
+  }
+  return states <= kMostStates;
 }
 
-std::vector<SampleBlock> SumModel::derivatives(const std::vector<double>& u, double interval) const {
+SampleBlock SumModel::block(const std::vector<double>& u, const SampleStep& step) const {
+  std::vector<SampleBlock> blocks;
+  for (const Term& term : terms_) blocks.push_back(term.process->block(own(u, term), step));
+  return stacked(blocks);
+}
+
+std::vector<SampleBlock> SumModel::derivatives(const std::vector<double>& u, const SampleStep& step) const {
+  std::vector<SampleBlock> nothing;
+  for (const Term& term : terms_) nothing.push_back(SampleBlock::zero(term.process->block(own(u, term), step).h.size()));
   std::vector<SampleBlock> all;
-  for (const Term& term : terms_)
-    for (const SampleBlock& slope : term.process->derivatives(own(u, term), interval)) {
-      all.push_back(SampleBlock::zero(states_));
-      place(slope, term, all.back());
+  for (std::size_t t = 0; t < terms_.size(); ++t)
+    for (const SampleBlock& slope : terms_[t].process->derivatives(own(u, terms_[t]), step)) {
+      std::vector<SampleBlock> blocks = nothing;
+      blocks[t] = slope;
+      all.push_back(stacked(blocks));
     }
   return all;
 }

@@ -22,9 +22,9 @@ constexpr std::string_view kSchema = "coast.page/1";
 
 // Names of the enumerators, in their order.
 constexpr std::array<std::string_view, 4> kVerdicts{"none", "good", "warn", "bad"};
-constexpr std::array<std::string_view, 18> kTones{"auto",      "x",     "y",       "z",     "forward", "smoothed",
-                                                  "reference", "muted", "fixed",   "float", "sbas",    "dgps",
-                                                  "single",    "ppp",   "unknown", "good",  "warn",    "bad"};
+constexpr std::array<std::string_view, 19> kTones{"auto",    "x",     "y",     "z",    "forward", "smoothed", "reference",
+                                                  "muted",   "fixed", "float", "sbas", "dgps",    "single",   "ppp",
+                                                  "unknown", "good",  "warn",  "bad",  "faint"};
 constexpr std::array<std::string_view, 3> kScales{"linear", "log", "time"};
 constexpr std::array<std::string_view, 3> kStyles{"line", "dashed", "steps"};
 constexpr std::array<std::string_view, 3> kNoteKinds{"info", "warning", "code"};

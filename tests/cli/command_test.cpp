@@ -12,6 +12,7 @@
 #include <sstream>
 
 #include "load.hpp"
+#include "program.hpp"
 #include "run_config.hpp"
 #include "study_config.hpp"
 #include "support/schema.hpp"
@@ -21,27 +22,6 @@ namespace coast::cli {
 namespace {
 
 namespace fs = std::filesystem;
-
-struct Outcome {
-  int status;
-  std::string error;  ///< standard error
-};
-
-std::string text_of(const fs::path& file) {
-  std::ifstream stream(file, std::ios::binary);
-  return {std::istreambuf_iterator<char>(stream), {}};
-}
-
-Outcome run(const std::string& arguments, const fs::path& folder) {
-  const fs::path log = folder / "stderr.txt";
-  const std::string command = fmt::format("'{}' {} >/dev/null 2>'{}'", COAST_PROGRAM, arguments, log.string());
-  const int status = std::system(command.c_str());
-  return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, text_of(log)};
-}
-
-void write(const fs::path& file, const std::string& text) {
-  std::ofstream(file, std::ios::binary) << text;
-}
 
 constexpr const char* kScenario = R"(
 schema: coast.scenario/1

@@ -96,7 +96,8 @@ TEST(Estimators, PyramidEndsAtTheOptimumOfTheFullRecord) {
   const Fit pyramid = fit_maximum_likelihood(likelihood, truth);
   const Fit full = fit_maximum_likelihood(likelihood, truth, {.pyramid = false});
   EXPECT_TRUE(pyramid.converged);
-  EXPECT_NEAR(pyramid.log_likelihood, full.log_likelihood, 1e-5);
+  EXPECT_GE(pyramid.log_likelihood, full.log_likelihood - 1e-5);  // each may end in another of several optima
+  EXPECT_LT(likelihood.slope(pyramid.u).gradient.norm(), 1e-2);
   EXPECT_LT(pyramid.passes, full.passes);
 }
 

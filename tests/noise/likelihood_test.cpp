@@ -182,6 +182,34 @@ TEST_P(EveryCase, InnovationsAreWhiteAndGiveTheLikelihood) {
   EXPECT_NEAR(squares, left.dot(factor.solve(left)), 1e-8 * squares);
 }
 
+// The block of means of m samples against the samples themselves: covariances of the dense normal, averaged.
+TEST_P(EveryCase, BlockMeansAreAveragesOfSamples) {
+  if (!model_.has_averages()) GTEST_SKIP() << "a process of this sum has no averages";
+  const std::size_t m = 7, blocks = 12;
+  const auto grid = [](std::size_t n) { return StaticSignal::regular(std::vector<double>(n, 0.0), 1.0); };
+  for (const double slower : {1.0, 1e-3, 1e-6}) {  // of the interval, so that rates times it go through all sizes
+    const double interval = GetParam().interval * slower;
+    const Eigen::MatrixXd fine = test::dense(model_.block(u_, interval), grid(m * blocks)).samples;
+    Eigen::MatrixXd mean = Eigen::MatrixXd::Zero(blocks, m * blocks);
+    for (std::size_t i = 0; i < blocks; ++i)
+      mean.row(static_cast<Eigen::Index>(i)).segment(static_cast<Eigen::Index>(i * m), m).setConstant(1.0 / m);
+    const auto coarse_at = [&](const std::vector<double>& u) {
+      return test::dense(model_.block(u, SampleStep(interval, m)), grid(blocks)).samples;
+    };
+    test::expect_near_matrix(coarse_at(u_), mean * fine * mean.transpose(), 1e-11, "covariance of block means");
+  }
+  const StaticSignal means = block_means(record_, 4);
+  const Likelihood likelihood({means}, model_, 4);
+  const auto value = [&](const Eigen::VectorXd& d) {
+    std::vector<double> at = u_;
+    for (std::size_t i = 0; i < at.size(); ++i) at[i] += d(static_cast<Eigen::Index>(i));
+    return Eigen::VectorXd::Constant(1, likelihood.value(at).log_likelihood).eval();
+  };
+  const Eigen::MatrixXd expected = test::finite_difference(value, static_cast<int>(u_.size()), 1e-4);
+  const LikelihoodSlope slope = likelihood.slope(u_);
+  for (Eigen::Index i = 0; i < slope.gradient.size(); ++i) EXPECT_NEAR(slope.gradient(i), expected(0, i), 3e-6) << i;
+}
+
 TEST(Likelihood, RecordsAddUpAndKeepTheirOwnLevels) {
   const Case c = cases()[0];
   const SumModel model = model_of(c);

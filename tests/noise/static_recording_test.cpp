@@ -64,7 +64,7 @@ TEST(StaticRecordingTest, MillisecondTagsDoNotMakeAnotherRate) {
 TEST(StaticRecordingTest, APartIsCutOutByTime) {
   const StaticRecording r = static_recording(counting(std::vector<double>(100, 0.01), 100.0), {0.2, 0.5});
   ASSERT_EQ(r.axes[0].values.size(), 30U);
-  EXPECT_NEAR(r.axes[0].values.front(), 19.0, 1e-9);  // its tag, the end of its interval, is 0.2 s
+  EXPECT_NEAR(r.axes[0].values.front(), 20.0, 1e-9);  // its interval begins at 0.2 s
   EXPECT_THROW(static_cast<void>(static_recording(counting(std::vector<double>(100, 0.01), 100.0), {2.0, {}})), InputError);
 }
 

@@ -1,5 +1,6 @@
 #include <gtest/gtest.h>
 
+#include <fstream>
 #include <nlohmann/json.hpp>
 #include <stdexcept>
 
@@ -85,6 +86,21 @@ TEST(PageJson, RoundTripKeepsEveryMember) {
   EXPECT_FALSE(back.sections.at(0).tables.at(0).columns.at(0).numeric);
   EXPECT_EQ(back.sections.at(0).notes.at(0).text, "</script><!-- a: 1");
   EXPECT_EQ(back.sections.at(0).panels.at(0).columns, 3);
+}
+
+// A tone is a word in the JSON, and a colour of that name in the style: one for light, and light's where dark has none.
+TEST(PageJson, EveryToneIsKeptAndHasAColour) {
+  std::ifstream stream(COAST_SOURCE_DIR "/src/report/web/style.css");
+  const std::string style{std::istreambuf_iterator<char>(stream), {}};
+  for (int i = 1; i <= static_cast<int>(Tone::kFaint); ++i) {
+    Page page = full_page();
+    page.sections.at(0).panels.at(0).plots.at(0).lines.at(0).tone = static_cast<Tone>(i);
+    const std::string text = to_json(page);
+    EXPECT_EQ(from_json(text, "report.json").sections.at(0).panels.at(0).plots.at(0).lines.at(0).tone, static_cast<Tone>(i));
+    const auto line = nlohmann::json::parse(text).at("sections").at(0).at("panels").at(0).at("plots").at(0).at("lines").at(0);
+    const std::string name = line.at("tone").get<std::string>();
+    EXPECT_NE(style.find("--tone-" + name + ": #"), std::string::npos) << name;
+  }
 }
 
 TEST(PageJson, FollowsItsSchema) {

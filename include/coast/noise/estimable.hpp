@@ -24,6 +24,14 @@ struct SampleBlock {
   [[nodiscard]] static SampleBlock zero(Eigen::Index states);
 };
 
+/// What one value of a signal is: the mean of `averaged` samples, `interval` s apart.
+struct SampleStep {
+  SampleStep(double seconds, std::size_t count = 1) : interval(seconds), averaged(count) {}  // a bare interval is one sample
+  [[nodiscard]] double duration() const { return interval * static_cast<double>(averaged); }
+  double interval;
+  std::size_t averaged;
+};
+
 /// Whose samples, and how far apart.
 struct Sampling {
   Sensor sensor = Sensor::kGyro;
@@ -72,13 +80,14 @@ class Estimable {
   [[nodiscard]] virtual std::string_view symbol() const = 0;  ///< as in "WN + 2 GM + RW"
   [[nodiscard]] virtual std::vector<ParameterInfo> parameters() const = 0;
   [[nodiscard]] virtual Eigen::Index states() const = 0;
-  /// Whether block means that are short against its rates are again the same process with the same parameters.
-  [[nodiscard]] virtual bool survives_averaging() const { return true; }
+  /// Whether there is a block for means of samples.
+  [[nodiscard]] virtual bool has_averages() const { return true; }
   /// Range of each u in which a record of this scale can tell anything.
   [[nodiscard]] virtual std::vector<Interval> ranges(const SignalScale& scale) const = 0;
-  /// The block at u over one sample interval (s), and its derivatives with respect to each u (h has none).
-  [[nodiscard]] virtual SampleBlock block(std::span<const double> u, double interval) const = 0;
-  [[nodiscard]] virtual std::vector<SampleBlock> derivatives(std::span<const double> u, double interval) const = 0;
+  /// The block at u over one step, and its derivatives with respect to each u (h has none). Of means of samples it may have
+  /// more states than `states()`.
+  [[nodiscard]] virtual SampleBlock block(std::span<const double> u, const SampleStep& step) const = 0;
+  [[nodiscard]] virtual std::vector<SampleBlock> derivatives(std::span<const double> u, const SampleStep& step) const = 0;
   /// Sets u to where the expected complete log-likelihood is largest: the M-step. `fixed[i]` keeps u[i].
   virtual void maximise(const BlockMoments& moments, double interval, const std::vector<bool>& fixed,
                         std::span<double> u) const = 0;

@@ -41,7 +41,8 @@ struct EmOptions {
 struct MaximumLikelihoodOptions {
   FixedParameters fixed = {};
   double tolerance = 1e-7;  ///< log-likelihood that the quadratic model still promises
-  bool pyramid = true;      ///< search on block means first where these hold all that slow processes tell
+  bool pyramid = true;      ///< search a long record on block means and its beginning first
+  bool polished = true;     ///< false: leave it at that; the log-likelihood is then of what was searched
   std::function<void(double)> progress = {};
 };
 /// Direct maximum likelihood: L-BFGS-B in u (logarithms) with the exact gradient on block means, then on the full record

@@ -43,11 +43,16 @@ struct LikelihoodSlope {
 class Likelihood {
  public:
   /// @param records  not empty; kept detrended, so a large constant costs no digits. All at the same interval.
+  /// @param averaged  samples of the sensor in each value of the records: block_means(record, averaged) beside 1
   /// @throws std::invalid_argument  no samples, or intervals that differ
-  Likelihood(const std::vector<StaticSignal>& records, SumModel model);
+  Likelihood(const std::vector<StaticSignal>& records, SumModel model, std::size_t averaged = 1);
 
   [[nodiscard]] const SumModel& model() const { return model_; }
-  [[nodiscard]] double interval() const { return records_.front().signal.interval; }
+  /// s between samples of the sensor; values are `averaged` of them apart.
+  [[nodiscard]] double interval() const { return step().interval; }
+  [[nodiscard]] SampleStep step() const {
+    return {records_.front().signal.interval / static_cast<double>(averaged_), averaged_};
+  }
   [[nodiscard]] double samples() const;
   [[nodiscard]] SignalScale scale() const;
   [[nodiscard]] const std::vector<Detrended>& records() const { return records_; }
@@ -56,7 +61,7 @@ class Likelihood {
   [[nodiscard]] LikelihoodValue value(const std::vector<double>& u) const;
   [[nodiscard]] LikelihoodSlope slope(const std::vector<double>& u) const;
 
-  /// E-step: the log-likelihood at u and the moments of every term, in the order of the model's terms.
+  /// E-step, on samples only: the log-likelihood at u and the moments of every term, in the order of the model's terms.
   struct Expectation {
     double log_likelihood = 0.0;
     std::vector<BlockMoments> moments;
@@ -72,6 +77,7 @@ class Likelihood {
  private:
   std::vector<Detrended> records_;
   SumModel model_;
+  std::size_t averaged_;
 };
 
 }  // namespace coast::noise

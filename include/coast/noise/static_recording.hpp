@@ -14,7 +14,7 @@
 
 namespace coast::noise {
 
-/// Part of a recording, s from the begin of its first interval.
+/// Part of a recording, s from the begin of its first interval: samples with from_s < tag <= to_s, whose intervals lie within.
 struct RecordingPart {
   std::optional<double> from_s;
   std::optional<double> to_s;

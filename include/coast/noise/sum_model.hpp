@@ -32,6 +32,8 @@ class SumModel {
   [[nodiscard]] Mean mean() const { return mean_; }
   [[nodiscard]] std::size_t parameters() const { return parameters_; }
   [[nodiscard]] Eigen::Index states() const { return states_; }
+  /// Whether block means of a record have a block: all processes have one, and there is room for their states.
+  [[nodiscard]] bool has_averages() const;
   [[nodiscard]] ParameterInfo parameter(std::size_t i) const;
   /// "beta 2" of the second Gauss-Markov process: unique within the model.
   [[nodiscard]] std::string parameter_name(std::size_t i) const;
@@ -40,9 +42,9 @@ class SumModel {
   [[nodiscard]] std::vector<Interval> ranges(const SignalScale& scale) const;
   [[nodiscard]] std::vector<double> values(const std::vector<double>& u) const;
 
-  [[nodiscard]] SampleBlock block(const std::vector<double>& u, double interval) const;
+  [[nodiscard]] SampleBlock block(const std::vector<double>& u, const SampleStep& step) const;
   /// One per parameter.
-  [[nodiscard]] std::vector<SampleBlock> derivatives(const std::vector<double>& u, double interval) const;
+  [[nodiscard]] std::vector<SampleBlock> derivatives(const std::vector<double>& u, const SampleStep& step) const;
   [[nodiscard]] std::vector<ProcessPtr> processes(const std::vector<double>& u, const Sampling& sampling) const;
 
  private:

@@ -15,12 +15,14 @@ namespace coast::noise {
 ///     I_ij = sum_k  E[de_i de_j]/S + dS_i dS_j/(2 S^2),
 ///
 /// e the innovations of the filter that carries level and drift as states of unlimited prior variance (so these are the
-/// innovations of the restricted likelihood), E over records of the model itself, propagated in closed form. O(samples); a
-/// record longer than 20 000 samples on block means where its processes are slow enough for that (beta times block below 0.1:
-/// below 1 % lost), the white noise from the scatter within blocks.
+/// innovations of the restricted likelihood), E over records of the model itself, propagated in closed form. O(samples). A
+/// record longer than 20 000 samples is taken as block means, and what samples tell within their blocks beside these: what is
+/// lost is only what ties the insides of neighbouring blocks together.
 /// @param samples  of the record, at `interval`
 [[nodiscard]] Eigen::MatrixXd expected_information(const SumModel& model, const std::vector<double>& u, double interval,
                                                    std::uint64_t samples);
+/// Summed over the records of a likelihood, as if they had no holes.
+[[nodiscard]] Eigen::MatrixXd record_information(const Likelihood& likelihood, const std::vector<double>& u);
 
 /// Inverse of an information matrix; a parameter of which nothing is known has an infinite variance.
 [[nodiscard]] Eigen::MatrixXd cramer_rao(const Eigen::MatrixXd& information);

@@ -35,7 +35,8 @@ enum class Tone {
   kUnknown,
   kGood,
   kWarn,
-  kBad
+  kBad,
+  kFaint  ///< lighter than muted: many curves that one is held against
 };
 
 /// One number of the acceptance sheet.

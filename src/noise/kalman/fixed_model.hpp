@@ -3,6 +3,7 @@
 
 #include <Eigen/Core>
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <stdexcept>
 #include <type_traits>
@@ -10,6 +11,40 @@
 #include "coast/noise/estimable.hpp"
 
 namespace coast::noise {
+
+/// The few elements of a transition that are not zero: blocks of one or two states. Products cost N for each.
+template <int N>
+class SparseTransition {
+ public:
+  using Matrix = Eigen::Matrix<double, N, N>;
+
+  explicit SparseTransition(const Matrix& Phi) {
+    for (int c = 0; c < N; ++c)
+      for (int r = 0; r < N; ++r)
+        if (Phi(r, c) != 0.0) elements_[static_cast<std::size_t>(count_++)] = {r, c, Phi(r, c)};
+  }
+  [[nodiscard]] bool empty() const { return count_ == 0; }
+  /// M Phi'
+  [[nodiscard]] Matrix right(const Matrix& M) const {
+    Matrix product = Matrix::Zero();
+    for (int k = 0; k < count_; ++k) {
+      const Element& e = elements_[static_cast<std::size_t>(k)];
+      product.col(e.row) += e.value * M.col(e.col);
+    }
+    return product;
+  }
+  /// Phi S Phi' for a symmetric S.
+  [[nodiscard]] Matrix congruence(const Matrix& S) const { return right(right(S).transpose()); }
+
+ private:
+  struct Element {
+    int row = 0;
+    int col = 0;
+    double value = 0.0;
+  };
+  std::array<Element, static_cast<std::size_t>(N) * N> elements_{};
+  int count_ = 0;
+};
 
 template <int N>
 struct FixedModel {
@@ -24,12 +59,14 @@ struct FixedModel {
     Q.topLeftCorner(n, n) = block.Q;
     P1.topLeftCorner(n, n) = block.P1;
     h.head(n) = block.h;
+    sparse = SparseTransition<N>(Phi);
   }
 
   Matrix Phi = Matrix::Zero();
   Matrix Q = Matrix::Zero();
   Matrix P1 = Matrix::Zero();
   Row h = Row::Zero();
+  SparseTransition<N> sparse{Matrix::Zero()};  ///< Phi
   double white = 0.0;
 };
 

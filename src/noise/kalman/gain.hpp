@@ -36,8 +36,8 @@ class Gain {
 
  private:
   void predict(const typename Model::Matrix& updated) {
-    P.noalias() = model_.Phi * updated * model_.Phi.transpose() + model_.Q;
-    P = (0.5 * (P + P.transpose())).eval();
+    const typename Model::Matrix moved = model_.sparse.congruence(updated);
+    P = 0.5 * (moved + moved.transpose()) + model_.Q;
   }
   void measure() {
     k.noalias() = P * model_.h.transpose();

@@ -35,17 +35,18 @@ class GainSlopes {
   [[nodiscard]] bool steady() const { return steady_; }
 
   void skip() {
-    for (Eigen::Index i = 0; i < count_; ++i) predict(i, gain.P, Matrix(dP_[at(i)]));
+    const Matrix right = model_.sparse.right(gain.P);
+    for (Eigen::Index i = 0; i < count_; ++i) predict(i, right, Matrix(dP_[at(i)]));
     gain.skip();
     measure();
     steady_ = false;
   }
   void step() {
     const double S = gain.S;
-    const Matrix P_upd = gain.P - S * gain.k * gain.k.transpose();
+    const Matrix right = model_.sparse.right(gain.P - S * gain.k * gain.k.transpose());
     for (Eigen::Index i = 0; i < count_; ++i) {
       const Matrix cross = dk.col(i) * gain.k.transpose();
-      predict(i, P_upd, dP_[at(i)] - dS(i) * gain.k * gain.k.transpose() - S * (cross + cross.transpose()));
+      predict(i, right, dP_[at(i)] - dS(i) * gain.k * gain.k.transpose() - S * (cross + cross.transpose()));
     }
     gain.step();
     measure();
@@ -66,14 +67,13 @@ class GainSlopes {
       dk.col(i) = (dPh - gain.k * dS(i)) / gain.S;
     }
   }
-  void predict(Eigen::Index i, const Matrix& P_upd, const Matrix& dP_upd) {
+  /// @param right  P_upd Phi'
+  void predict(Eigen::Index i, const Matrix& right, const Matrix& dP_upd) {
     const Model& slope = slopes_[at(i)];
-    Matrix next = model_.Phi * dP_upd * model_.Phi.transpose() + slope.Q;
-    if (moves_[at(i)]) {
-      const Matrix cross = slope.Phi * P_upd * model_.Phi.transpose();
-      next += cross + cross.transpose();
-    }
-    dP_[at(i)] = 0.5 * (next + next.transpose());
+    Matrix next = model_.sparse.congruence(dP_upd);
+    // dPhi P_upd Phi' = ((P_upd Phi')' dPhi')'
+    if (moves_[at(i)]) next += 2.0 * slope.sparse.right(right.transpose());
+    dP_[at(i)] = 0.5 * (next + next.transpose()) + slope.Q;
   }
   /// At rest are filter and derivatives, or neither.
   void look() {

@@ -183,14 +183,14 @@ class EstimableAr final : public Estimable {
     return all;
   }
   [[nodiscard]] Index states() const override { return order_; }
-  [[nodiscard]] bool survives_averaging() const override { return false; }
+  [[nodiscard]] bool has_averages() const override { return false; }
   [[nodiscard]] std::vector<Interval> ranges(const SignalScale& scale) const override {
     constexpr double kNearOne = 9.0;  // tanh 9 is 3e-8 from 1
     std::vector<Interval> all(static_cast<std::size_t>(order_), {-kNearOne, kNearOne});
     all.push_back(log_variance_range(scale.variance));
     return all;
   }
-  [[nodiscard]] SampleBlock block(std::span<const double> u, double) const override {
+  [[nodiscard]] SampleBlock block(std::span<const double> u, const SampleStep&) const override {
     SampleBlock block = SampleBlock::zero(order_);
     block.Phi.row(0) = from_partial(partial_of(u)).a.transpose();
     for (Index i = 1; i < order_; ++i) block.Phi(i, i - 1) = 1.0;
@@ -199,8 +199,8 @@ class EstimableAr final : public Estimable {
     block.h(0) = 1.0;
     return block;
   }
-  [[nodiscard]] std::vector<SampleBlock> derivatives(std::span<const double> u, double interval) const override {
-    const SampleBlock at = block(u, interval);
+  [[nodiscard]] std::vector<SampleBlock> derivatives(std::span<const double> u, const SampleStep& step) const override {
+    const SampleBlock at = block(u, step);
     const VectorXd partial = partial_of(u);
     const MatrixXd slope = from_partial(partial).slope;
     std::vector<SampleBlock> all;

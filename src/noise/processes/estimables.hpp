@@ -15,7 +15,7 @@ namespace coast::noise {
 
 /// Range of log(variance): from where nothing of it can be seen to all of the signal and more.
 [[nodiscard]] inline Interval log_variance_range(double variance) {
-  return {std::log(variance) - 35.0, std::log(variance) + 7.0};
+  return {std::log(variance) - 25.0, std::log(variance) + 7.0};
 }
 
 }  // namespace coast::noise

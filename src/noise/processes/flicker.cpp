@@ -93,21 +93,22 @@ class EstimableFlicker final : public Estimable {
   [[nodiscard]] std::string_view symbol() const override { return "BI"; }
   [[nodiscard]] std::vector<ParameterInfo> parameters() const override { return {{"coefficient2", "signal^2"}}; }
   [[nodiscard]] Eigen::Index states() const override { return unit_.states(); }
+  [[nodiscard]] bool has_averages() const override { return false; }
   [[nodiscard]] std::vector<Interval> ranges(const SignalScale& scale) const override {
     return {log_variance_range(scale.variance)};
   }
-  [[nodiscard]] SampleBlock block(std::span<const double> u, double interval) const override {
+  [[nodiscard]] SampleBlock block(std::span<const double> u, const SampleStep& step) const override {
     SampleBlock block = SampleBlock::zero(states());
-    unit_.transition(interval, block.Phi);
-    unit_.driving_noise(interval, block.Q);
+    unit_.transition(step.interval, block.Phi);
+    unit_.driving_noise(step.interval, block.Q);
     unit_.initial_covariance(block.P1);
     block.h.setOnes();
     block.Q *= std::exp(u[0]);
     block.P1 *= std::exp(u[0]);
     return block;
   }
-  [[nodiscard]] std::vector<SampleBlock> derivatives(std::span<const double> u, double interval) const override {
-    return {variances_of(block(u, interval))};
+  [[nodiscard]] std::vector<SampleBlock> derivatives(std::span<const double> u, const SampleStep& step) const override {
+    return {variances_of(block(u, step))};
   }
   void maximise(const BlockMoments& m, double interval, const std::vector<bool>& fixed, std::span<double> u) const override {
     if (fixed[0]) return;

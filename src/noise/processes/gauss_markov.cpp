@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "entry.hpp"
+#include "processes/block_averages.hpp"
 #include "processes/estimables.hpp"
 #include "processes/processes.hpp"
 #include "scalar_process.hpp"
@@ -124,6 +125,12 @@ double zero_of(const Slope& slope, double low, double high) {
   return 0.5 * (low + high);
 }
 
+SampleBlock scaled(SampleBlock block, double log_variance) {
+  block.Q *= std::exp(log_variance);
+  block.P1 *= std::exp(log_variance);
+  return block;
+}
+
 /// u = log beta [1/s], log sigma^2 [signal]^2, discretised exactly, starting stationary.
 class EstimableGaussMarkov final : public Estimable {
  public:
@@ -137,22 +144,24 @@ class EstimableGaussMarkov final : public Estimable {
   [[nodiscard]] std::vector<Interval> ranges(const SignalScale& scale) const override {
     return {{-std::log(10.0 * scale.duration), std::log(3.0 / scale.interval)}, log_variance_range(scale.variance)};
   }
-  [[nodiscard]] SampleBlock block(std::span<const double> u, double interval) const override {
-    const double step = std::exp(u[0]) * interval;
+  [[nodiscard]] SampleBlock block(std::span<const double> u, const SampleStep& step) const override {
+    if (step.averaged > 1) return scaled(averaged_gauss_markov(std::exp(u[0]) * step.interval, step.averaged).value, u[1]);
+    const double b = std::exp(u[0]) * step.interval;
     const double sigma2 = std::exp(u[1]);
     SampleBlock block = SampleBlock::zero(1);
-    block.Phi(0, 0) = std::exp(-step);
-    block.Q(0, 0) = -sigma2 * std::expm1(-2.0 * step);
+    block.Phi(0, 0) = std::exp(-b);
+    block.Q(0, 0) = -sigma2 * std::expm1(-2.0 * b);
     block.P1(0, 0) = sigma2;
     block.h(0) = 1.0;
     return block;
   }
-  [[nodiscard]] std::vector<SampleBlock> derivatives(std::span<const double> u, double interval) const override {
-    const SampleBlock at = block(u, interval);
-    const double step = std::exp(u[0]) * interval;
+  [[nodiscard]] std::vector<SampleBlock> derivatives(std::span<const double> u, const SampleStep& step) const override {
+    const SampleBlock at = block(u, step);
+    const double b = std::exp(u[0]) * step.interval;
+    if (step.averaged > 1) return {scaled(averaged_gauss_markov(b, step.averaged).slope, u[1]), variances_of(at)};
     SampleBlock by_beta = SampleBlock::zero(1);
-    by_beta.Phi = -step * at.Phi;
-    by_beta.Q(0, 0) = 2.0 * step * std::exp(u[1] - 2.0 * step);
+    by_beta.Phi = -b * at.Phi;
+    by_beta.Q(0, 0) = 2.0 * b * std::exp(u[1] - 2.0 * b);
     return {by_beta, variances_of(at)};
   }
   void maximise(const BlockMoments& m, double interval, const std::vector<bool>& fixed, std::span<double> u) const override;

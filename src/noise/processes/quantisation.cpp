@@ -83,20 +83,19 @@ class EstimableQuantisation final : public Estimable {
   [[nodiscard]] std::string_view symbol() const override { return "QN"; }
   [[nodiscard]] std::vector<ParameterInfo> parameters() const override { return {{"q2", "(signal s)^2"}}; }
   [[nodiscard]] Eigen::Index states() const override { return 2; }
-  [[nodiscard]] bool survives_averaging() const override { return false; }
   [[nodiscard]] std::vector<Interval> ranges(const SignalScale& scale) const override {
     return {log_variance_range(scale.variance * scale.interval * scale.interval)};
   }
-  [[nodiscard]] SampleBlock block(std::span<const double> u, double interval) const override {
+  [[nodiscard]] SampleBlock block(std::span<const double> u, const SampleStep& step) const override {
     SampleBlock block = SampleBlock::zero(2);
     block.Phi(1, 0) = 1.0;
-    block.Q(0, 0) = std::exp(u[0]) / (interval * interval);
+    block.Q(0, 0) = std::exp(u[0]) / (step.duration() * step.duration());
     block.P1 = block.Q(0, 0) * Eigen::Matrix2d::Identity();
     block.h << 1.0, -1.0;
     return block;
   }
-  [[nodiscard]] std::vector<SampleBlock> derivatives(std::span<const double> u, double interval) const override {
-    return {variances_of(block(u, interval))};
+  [[nodiscard]] std::vector<SampleBlock> derivatives(std::span<const double> u, const SampleStep& step) const override {
+    return {variances_of(block(u, step))};
   }
   void maximise(const BlockMoments& m, double interval, const std::vector<bool>& fixed, std::span<double> u) const override {
     if (fixed[0]) return;

@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "entry.hpp"
+#include "processes/block_averages.hpp"
 #include "processes/estimables.hpp"
 #include "processes/processes.hpp"
 #include "scalar_process.hpp"
@@ -43,15 +44,21 @@ class EstimableRandomWalk final : public Estimable {
   [[nodiscard]] std::vector<Interval> ranges(const SignalScale& scale) const override {
     return {log_variance_range(scale.variance / scale.duration)};
   }
-  [[nodiscard]] SampleBlock block(std::span<const double> u, double interval) const override {
+  [[nodiscard]] SampleBlock block(std::span<const double> u, const SampleStep& step) const override {
+    if (step.averaged > 1) {
+      SampleBlock means = averaged_random_walk(step.averaged);
+      means.Q *= std::exp(u[0]) * step.interval;
+      means.P1 *= std::exp(u[0]) * step.interval;
+      return means;
+    }
     SampleBlock block = SampleBlock::zero(1);
     block.Phi(0, 0) = 1.0;
-    block.Q(0, 0) = std::exp(u[0]) * interval;
+    block.Q(0, 0) = std::exp(u[0]) * step.interval;
     block.h(0) = 1.0;
     return block;
   }
-  [[nodiscard]] std::vector<SampleBlock> derivatives(std::span<const double> u, double interval) const override {
-    return {variances_of(block(u, interval))};
+  [[nodiscard]] std::vector<SampleBlock> derivatives(std::span<const double> u, const SampleStep& step) const override {
+    return {variances_of(block(u, step))};
   }
   void maximise(const BlockMoments& m, double interval, const std::vector<bool>& fixed, std::span<double> u) const override {
     if (fixed[0]) return;

@@ -52,13 +52,13 @@ class EstimableWhiteNoise final : public Estimable {
   [[nodiscard]] std::vector<Interval> ranges(const SignalScale& scale) const override {
     return {log_variance_range(scale.variance * scale.interval)};
   }
-  [[nodiscard]] SampleBlock block(std::span<const double> u, double interval) const override {
+  [[nodiscard]] SampleBlock block(std::span<const double> u, const SampleStep& step) const override {
     SampleBlock block = SampleBlock::zero(0);
-    block.white = std::exp(u[0]) / interval;
+    block.white = std::exp(u[0]) / step.duration();
     return block;
   }
-  [[nodiscard]] std::vector<SampleBlock> derivatives(std::span<const double> u, double interval) const override {
-    return {block(u, interval)};
+  [[nodiscard]] std::vector<SampleBlock> derivatives(std::span<const double> u, const SampleStep& step) const override {
+    return {block(u, step)};
   }
   void maximise(const BlockMoments& moments, double interval, const std::vector<bool>& fixed,
                 std::span<double> u) const override {
