@@ -35,9 +35,7 @@ struct LikelihoodSlope {
 ///
 /// with the innovations e_k at the level and drift that maximise it, X their m regressors and V the covariance of the samples:
 /// the restricted log-likelihood (Patterson & Thompson 1971; Harville 1977), which is that of all contrasts of the record that
-/// no level or drift can change. Without the second term slow processes lose to the mean what it takes from them: in 6000 s of
-/// a Gauss-Markov process of 125 s, level and drift estimated, sigma2 is 7 % low and 95 % intervals of it hold 88 %.
-/// By the Kalman filter, exactly, from the stationary start; holes are predicted across. The record is read once for a value
+/// no level or drift can change (docs/decisions/0008-restricted-likelihood.md). By the Kalman filter, exactly, from the stationary start; holes are predicted across. The record is read once for a value
 /// and twice more for the gradient. Where the filter's gain has come to rest (relative 1e-13) it is kept.
 /// @note about 15 ns per sample for a value at 3 states (tools/bench).
 class Likelihood {
