@@ -85,7 +85,7 @@ report::Table candidate_table(const CalibratedAxis& axis) {
   double aicc = bic;
   bool held_out = false;
   for (const noise::Candidate& c : r.candidates) {
-    most = std::max(most, c.fit.log_likelihood);
+    most = std::max(most, c.compared_log_likelihood);
     bic = std::min(bic, c.bic);
     aicc = std::min(aicc, c.aicc);
     held_out = held_out || c.held_out;
@@ -105,8 +105,8 @@ report::Table candidate_table(const CalibratedAxis& axis) {
       return std::isfinite(value) ? decimals(value - reference, 1) : std::string("none");
     };
     std::vector<report::Cell> row =
-        cells({c.model.name(), fmt::format("{}", c.parameters), difference(c.fit.log_likelihood, most), difference(c.bic, bic),
-               difference(c.aicc, aicc)});
+        cells({c.model.name(), fmt::format("{}", c.parameters), difference(c.compared_log_likelihood, most),
+               difference(c.bic, bic), difference(c.aicc, aicc)});
     if (held_out) row.push_back({c.held_out ? fmt::format("{:.6f}", *c.held_out) : "none"});
     row.push_back({i == r.chosen  ? "chosen"
                    : c.degenerate ? "degenerate"

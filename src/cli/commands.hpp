@@ -24,6 +24,13 @@ void simulate(const std::filesystem::path& scenario_yaml, std::optional<std::uin
 void outage(const std::filesystem::path& study_yaml, const CommonOptions& options);
 /// `coast calibrate INPUT`: static recordings -> error_model.yaml, calibration.json, report.html.
 void calibrate(const std::filesystem::path& input, const CommonOptions& options);
+/// `coast calibrate study.yaml` with schema coast.estimator_study/1: the estimators on simulated records ->
+/// estimator_study.json, report.html.
+void estimator_study(const std::filesystem::path& study_yaml, const CommonOptions& options);
+/// Whether this file is such a study, by its schema key.
+[[nodiscard]] bool is_estimator_study(const std::filesystem::path& file);
+/// The study.yaml of the help page, every line behind `indent`.
+[[nodiscard]] std::string estimator_study_example(const std::string& indent);
 /// The calibration.yaml of the help page, every line behind `indent`.
 [[nodiscard]] std::string calibration_example(const std::string& indent);
 /// `coast compare a.nav b.nav`: differences a - b in N, E, D and attitude.

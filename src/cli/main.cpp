@@ -57,13 +57,19 @@ int run(int argc, char** argv) {
 
   auto* calibrate =
       subcommand(app, "calibrate", "static records -> IMU error model with intervals, and what they cannot tell", "", common);
-  calibrate->add_option("input", input, "an IMU file at rest (default CSV columns, KF-GINS, IMR), or calibration.yaml")
+  calibrate
+      ->add_option("input", input, "an IMU file at rest (default CSV columns, KF-GINS, IMR), calibration.yaml, or study.yaml")
       ->required();
   calibrate->footer(
       fmt::format("Examples:\n  coast calibrate imu.csv --out imu-model\n  coast calibrate calibration.yaml\n\n"
-                  "calibration.yaml:\n{}",
-                  coast::cli::calibration_example("  ")));
-  calibrate->callback([&] { coast::cli::calibrate(input, common); });
+                  "calibration.yaml:\n{}\n\nstudy.yaml, the estimators on simulated records of known processes:\n{}",
+                  coast::cli::calibration_example("  "), coast::cli::estimator_study_example("  ")));
+  calibrate->callback([&] {
+    if (coast::cli::is_estimator_study(input))
+      coast::cli::estimator_study(input, common);
+    else
+      coast::cli::calibrate(input, common);
+  });
 
   auto* compare = subcommand(app, "compare", "two trajectories: N, E, D and attitude differences, first minus second",
                              "coast compare results/trajectory.nav truth.nav", common);

@@ -14,6 +14,7 @@ struct SearchResult {
   std::vector<double> u;
   double value = 0.0;
   int evaluations = 0;
+  std::vector<double> trace = {};  ///< the best value after each evaluation
 };
 
 /// Minimises `cost(u, gradient)`; variables whose range is a point stay. Ends where the projected gradient is below
@@ -31,7 +32,7 @@ SearchResult search_within(const std::vector<double>& start, const std::vector<I
     upper(i) = box[at].upper;
     x(i) = std::clamp(start[at], box[at].lower, box[at].upper);
   }
-  SearchResult best{{x.begin(), x.end()}, std::numeric_limits<double>::infinity(), 0};
+  SearchResult best{{x.begin(), x.end()}, std::numeric_limits<double>::infinity(), 0, {}};
   const auto evaluate = [&](const Eigen::VectorXd& at, Eigen::VectorXd& gradient) {
     const std::vector<double> u(at.begin(), at.end());
     double value = cost(u, gradient);
@@ -44,6 +45,7 @@ SearchResult search_within(const std::vector<double>& start, const std::vector<I
       best.value = value;
       best.u = u;
     }
+    best.trace.push_back(best.value);
     return value;
   };
   LBFGSpp::LBFGSBParam<double> param;

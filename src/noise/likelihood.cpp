@@ -16,10 +16,29 @@ namespace {
 
 /// What one record gives at one u: the sums, the mean that maximises, and the log-likelihood there.
 struct Concentrated {
-  double log_likelihood = -std::numeric_limits<double>::infinity();
-  MeanCurve curve;         ///< in the grid's tau
-  Eigen::MatrixXd normal;  ///< X' V^-1 X
+  double log_likelihood = -std::numeric_limits<double>::infinity();  ///< restricted
+  double at_mean = -std::numeric_limits<double>::infinity();         ///< maximised over level and drift
+  MeanCurve curve;                                                   ///< in the grid's tau
+  Eigen::MatrixXd normal;                                            ///< X' V^-1 X
 };
+
+/// log of |X'V^-1 X| / |X'X|: what the mean takes from the likelihood of the processes, but for a constant.
+double log_weight(const Eigen::MatrixXd& normal, const StaticSignal& signal) {
+  const Eigen::Index m = normal.rows();
+  if (m == 0) return 0.0;
+  Eigen::Matrix2d plain = Eigen::Matrix2d::Zero();
+  const GridTime time(signal);
+  for (const StaticSignal::Run& run : signal.runs) {
+    // Sums of tau = (i - c) s and of its square over i = start .. start + count - 1.
+    const auto n = static_cast<double>(run.count);
+    const double middle = 0.5 * (time.at(run.start) + time.at(run.start + run.count - 1));
+    plain(0, 0) += n;
+    plain(0, 1) += n * middle;
+    plain(1, 1) += n * middle * middle + n * (n * n - 1.0) / 12.0 * time.step() * time.step();
+  }
+  plain(1, 0) = plain(0, 1);
+  return std::log(normal.determinant() / plain.topLeftCorner(m, m).determinant());
+}
 
 Concentrated concentrate(const SampleBlock& block, const StaticSignal& signal, Mean mean) {
   const InnovationSums sums = innovation_pass(block, signal);
@@ -37,7 +56,11 @@ Concentrated concentrate(const SampleBlock& block, const StaticSignal& signal, M
   }
   const auto n = static_cast<double>(signal.values.size());
   const double value = -0.5 * (n * std::log(2.0 * std::numbers::pi) + sums.log_determinant + squares);
-  if (std::isfinite(value)) result.log_likelihood = value;
+  if (!std::isfinite(value)) return result;
+  result.at_mean = value;
+  const double restricted =
+      value + 0.5 * (static_cast<double>(m) * std::log(2.0 * std::numbers::pi) - log_weight(result.normal, signal));
+  if (std::isfinite(restricted)) result.log_likelihood = restricted;
   return result;
 }
 
@@ -76,6 +99,16 @@ void add(const BlockMoments& more, BlockMoments& sum) {
   sum.records += more.records;
   sum.residual += more.residual;
   sum.samples += more.samples;
+}
+
+/// Curves whose sum with independent normal coefficients has the covariance of the estimated mean.
+std::vector<MeanCurve> doubt_of(const Concentrated& fit) {
+  const Eigen::Index m = fit.normal.rows();
+  if (m == 0) return {};
+  const Eigen::MatrixXd root = fit.normal.inverse().llt().matrixL();
+  std::vector<MeanCurve> curves;
+  for (Eigen::Index c = 0; c < m; ++c) curves.push_back({root(0, c), m > 1 ? root(1, c) : 0.0});
+  return curves;
 }
 
 BlockMoments of_term(const BlockMoments& all, const SumModel::Term& term) {
@@ -125,12 +158,14 @@ LikelihoodValue Likelihood::value(const std::vector<double>& u) const {
   for (const Detrended& record : records_) {
     const Concentrated fit = concentrate(block, record.signal, model_.mean());
     sum.log_likelihood += fit.log_likelihood;
+    sum.at_mean += fit.at_mean;
     if (std::isfinite(fit.log_likelihood)) sum.means.push_back(in_seconds(fit, record));
   }
   return sum;
 }
 
-// The mean maximises the likelihood, so the gradient at a fixed mean is that of the maximum over it.
+// The mean maximises the likelihood, so the gradient at a fixed mean is that of the maximum over it; log |X'V^-1 X| has its
+// own.
 LikelihoodSlope Likelihood::slope(const std::vector<double>& u) const {
   const SampleBlock block = model_.block(u, step());
   const std::vector<SampleBlock> derivatives = model_.derivatives(u, step());
@@ -142,6 +177,12 @@ LikelihoodSlope Likelihood::slope(const std::vector<double>& u) const {
     if (!std::isfinite(fit.log_likelihood)) return sum;
     const ScoreSums score = score_pass(block, derivatives, record.signal, fit.curve);
     sum.gradient += score.gradient;
+    const Eigen::Index m = fit.normal.rows();
+    if (m > 0) {
+      const Eigen::MatrixXd inverse = fit.normal.inverse();
+      for (Eigen::Index i = 0; i < p; ++i)
+        sum.gradient(i) -= 0.5 * (inverse * score.products[static_cast<std::size_t>(i)].topLeftCorner(m, m)).trace();
+    }
     sum.information += score.information;
   }
   return sum;
@@ -158,7 +199,7 @@ Likelihood::Expectation Likelihood::expectation(const std::vector<double>& u, st
     const Concentrated fit = concentrate(block, record.signal, model_.mean());
     result.log_likelihood += fit.log_likelihood;
     if (!std::isfinite(fit.log_likelihood)) return result;
-    add(moment_pass(block, record.signal, fit.curve, scratch), sum);
+    add(moment_pass(block, record.signal, fit.curve, doubt_of(fit), scratch), sum);
   }
   memory = std::move(scratch.steps);
   for (const SumModel::Term& term : model_.terms()) result.moments.push_back(of_term(sum, term));

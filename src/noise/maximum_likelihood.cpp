@@ -4,6 +4,20 @@
 
 namespace coast::noise {
 
+namespace {
+
+/// Variances that start at nothing are lifted to where the likelihood's slope in their logarithm can be told from zero: at
+/// nothing every start is a stationary point.
+void lift_from_zero(const Likelihood& likelihood, const std::vector<Interval>& box, std::vector<double>& u) {
+  constexpr double kNothing = 15.0;  // the range spans 42
+  constexpr double kSmall = 15.0;    // below the upper end: 3e-4 of the signal
+  for (std::size_t i = 0; i < u.size(); ++i)
+    if (likelihood.model().parameter(i).kind == ParameterInfo::Kind::kVariance && u[i] < box[i].lower + kNothing)
+      u[i] = std::clamp(box[i].upper - kSmall, box[i].lower, box[i].upper);
+}
+
+}  // namespace
+
 Fit fit_maximum_likelihood(const Likelihood& likelihood, const std::vector<double>& start,
                            const MaximumLikelihoodOptions& options) {
   constexpr int kIterations = 30;
@@ -14,6 +28,7 @@ Fit fit_maximum_likelihood(const Likelihood& likelihood, const std::vector<doubl
   Fit fit;
   fit.u = start;
   for (std::size_t i = 0; i < box.size(); ++i) fit.u[i] = std::clamp(fit.u[i], box[i].lower, box[i].upper);
+  lift_from_zero(likelihood, box, fit.u);
   const auto search = [&](const auto& of) {
     return search_within(fit.u, box, kGradient, kIterations, [&](const std::vector<double>& u, Eigen::VectorXd& gradient) {
       const LikelihoodSlope at = of.slope(u);
@@ -25,7 +40,7 @@ Fit fit_maximum_likelihood(const Likelihood& likelihood, const std::vector<doubl
   const ShortLikelihood shortened(likelihood);
   if (options.pyramid && !shortened.is_whole()) {
     fit.u = search(shortened).u;
-    polish([&](const std::vector<double>& u) { return shortened.slope(u); }, box, {},
+    polish([&](const std::vector<double>& u) { return shortened.slope(u); }, likelihood.model(), box, {},
            {.tolerance = kShortTolerance, .steps = kShortSteps}, fit);
     fit.trace.clear();
     fit.passes = 0;
@@ -34,10 +49,11 @@ Fit fit_maximum_likelihood(const Likelihood& likelihood, const std::vector<doubl
     const SearchResult found = search(likelihood);
     fit.u = found.u;
     fit.passes += found.evaluations;
+    for (const double value : found.trace) fit.trace.push_back(-value);
   }
   if (options.polished) {
-    polish([&](const std::vector<double>& u) { return likelihood.slope(u); }, box, excess, {.tolerance = options.tolerance},
-           fit);
+    polish([&](const std::vector<double>& u) { return likelihood.slope(u); }, likelihood.model(), box, excess,
+           {.tolerance = options.tolerance}, fit);
   } else {
     fit.log_likelihood = shortened.value(fit.u);
   }

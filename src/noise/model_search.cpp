@@ -54,7 +54,7 @@ double held_out_score(const std::vector<StaticSignal>& records, const SumModel& 
     for (const std::size_t fitted : {std::size_t{0}, std::size_t{1}}) {
       const Fit fit = fit_maximum_likelihood(Likelihood({parts[fitted]}, model), u);
       const Likelihood other({parts[1 - fitted]}, model);
-      sum += other.value(fit.u).log_likelihood;
+      sum += other.value(fit.u).at_mean;
       samples += other.samples();
     }
   }
@@ -190,7 +190,7 @@ class Search {
     if (!rest) return at;
     const std::size_t found = fit(*rest);
     // What is not there leaves the likelihood where it was.
-    tried_[at].fit.log_likelihood = tried_[at].compared_log_likelihood = tried_[found].compared_log_likelihood;
+    tried_[at].compared_log_likelihood = tried_[found].compared_log_likelihood;
     score(Likelihood(records_, tried_[at].model), tried_[at]);
     return found;
   }
@@ -220,7 +220,7 @@ Candidate fit_candidate(const std::vector<StaticSignal>& records, const AllanCur
   }
   candidate.fit = fit_maximum_likelihood(likelihood, best, {.polished = shortened.is_whole()});
   candidate.degenerate = std::ranges::count(silent_terms(shortened, model.ranges(scale), model, candidate.fit.u), true) > 0;
-  candidate.compared_log_likelihood = candidate.fit.log_likelihood;
+  candidate.compared_log_likelihood = shortened.at_mean(candidate.fit.u);
   score(likelihood, candidate);
   return candidate;
 }

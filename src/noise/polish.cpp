@@ -2,6 +2,7 @@
 
 #include <Eigen/Cholesky>
 #include <cmath>
+#include <limits>
 
 namespace coast::noise {
 
@@ -9,8 +10,8 @@ namespace {
 
 class Polish {
  public:
-  Polish(const SlopeFunction& likelihood, std::vector<Interval> box, Eigen::MatrixXd excess, Fit& fit)
-      : likelihood_(likelihood), box_(std::move(box)), excess_(std::move(excess)), fit_(fit) {}
+  Polish(const SlopeFunction& likelihood, const SumModel& model, std::vector<Interval> box, Eigen::MatrixXd excess, Fit& fit)
+      : likelihood_(likelihood), model_(model), box_(std::move(box)), excess_(std::move(excess)), fit_(fit) {}
 
   void run(double tolerance, int steps) {
     LikelihoodSlope at = likelihood_(fit_.u);
@@ -58,14 +59,21 @@ class Polish {
   /// The information approximates the curvature where the model fits; along flat directions what it leaves out counts.
   [[nodiscard]] Eigen::MatrixXd curvature_at(const LikelihoodSlope& at) const {
     if (excess_.size() == 0) return at.information;
-    const Eigen::MatrixXd curvature = at.information + excess_;
+    constexpr double kUnseen = 1e-6;  // the excess comes from differences and has their noise
+    Eigen::MatrixXd excess = excess_;
+    for (Eigen::Index i = 0; i < excess.rows(); ++i)
+      if (at.information(i, i) < kUnseen) {
+        excess.row(i).setZero();
+        excess.col(i).setZero();
+      }
+    const Eigen::MatrixXd curvature = at.information + excess;
     return curvature.llt().info() == Eigen::Success ? curvature : at.information;
   }
   static Eigen::VectorXd proposal(const LikelihoodSlope& at, Eigen::MatrixXd curvature, const std::vector<bool>& held,
                                   double damping) {
     Eigen::VectorXd gradient = at.gradient;
     for (Eigen::Index i = 0; i < gradient.size(); ++i) {
-      curvature(i, i) = (1.0 + damping) * curvature(i, i) + 1e-12;
+      curvature(i, i) = (1.0 + damping) * curvature(i, i) + std::numeric_limits<double>::min();
       if (!held[static_cast<std::size_t>(i)]) continue;
       curvature.row(i).setZero();
       curvature.col(i).setZero();
@@ -74,15 +82,28 @@ class Polish {
     }
     return curvature.ldlt().solve(gradient);
   }
+  /// A variance far from its optimum goes there in its own value, not its logarithm: about nothing the likelihood is a parabola
+  /// of the value, and where that has its top below zero the variance is not there.
   [[nodiscard]] std::vector<double> moved(const Eigen::VectorXd& move) const {
-    const double scale = std::min(1.0, kFarthest / std::max(move.cwiseAbs().maxCoeff(), 1e-300));
+    const auto far_variance = [&](std::size_t i) {
+      return std::abs(move(static_cast<Eigen::Index>(i))) > kFarthest &&
+             model_.parameter(i).kind == ParameterInfo::Kind::kVariance;
+    };
+    double longest = kFarthest;
+    for (std::size_t i = 0; i < fit_.u.size(); ++i)
+      if (!far_variance(i)) longest = std::max(longest, std::abs(move(static_cast<Eigen::Index>(i))));
     std::vector<double> next = fit_.u;
-    for (std::size_t i = 0; i < next.size(); ++i)
-      next[i] = std::clamp(next[i] + scale * move(static_cast<Eigen::Index>(i)), box_[i].lower, box_[i].upper);
+    for (std::size_t i = 0; i < next.size(); ++i) {
+      const double m = move(static_cast<Eigen::Index>(i));
+      const double to =
+          far_variance(i) ? (m > 0.0 ? next[i] + std::log1p(m) : box_[i].lower) : next[i] + kFarthest / longest * m;
+      next[i] = std::clamp(to, box_[i].lower, box_[i].upper);
+    }
     return next;
   }
 
   const SlopeFunction& likelihood_;
+  const SumModel& model_;
   std::vector<Interval> box_;
   Eigen::MatrixXd excess_;
   Fit& fit_;
@@ -97,9 +118,9 @@ std::vector<Interval> box_of(const Likelihood& likelihood, const std::vector<dou
   return box;
 }
 
-void polish(const SlopeFunction& likelihood, const std::vector<Interval>& box, const Eigen::MatrixXd& excess,
-            const PolishOptions& options, Fit& fit) {
-  Polish(likelihood, box, excess, fit).run(options.tolerance, options.steps);
+void polish(const SlopeFunction& likelihood, const SumModel& model, const std::vector<Interval>& box,
+            const Eigen::MatrixXd& excess, const PolishOptions& options, Fit& fit) {
+  Polish(likelihood, model, box, excess, fit).run(options.tolerance, options.steps);
 }
 
 Eigen::MatrixXd excess_curvature(const ShortLikelihood& likelihood, const std::vector<double>& u) {

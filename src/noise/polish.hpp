@@ -19,8 +19,8 @@ struct PolishOptions {
   double tolerance = 1e-7;
   int steps = 60;  ///< at most
 };
-void polish(const SlopeFunction& likelihood, const std::vector<Interval>& box, const Eigen::MatrixXd& excess,
-            const PolishOptions& options, Fit& fit);
+void polish(const SlopeFunction& likelihood, const SumModel& model, const std::vector<Interval>& box,
+            const Eigen::MatrixXd& excess, const PolishOptions& options, Fit& fit);
 
 /// Minus the Hessian of the log-likelihood by central differences of its gradient, less the information.
 [[nodiscard]] Eigen::MatrixXd excess_curvature(const ShortLikelihood& likelihood, const std::vector<double>& u);

@@ -43,6 +43,12 @@ double ShortLikelihood::value(const std::vector<double>& u) const {
   return sum;
 }
 
+double ShortLikelihood::at_mean(const std::vector<double>& u) const {
+  double sum = 0.0;
+  for (const Likelihood& part : parts_) sum += part.value(u).at_mean;
+  return sum;
+}
+
 LikelihoodSlope ShortLikelihood::slope(const std::vector<double>& u) const {
   const auto p = static_cast<Eigen::Index>(u.size());
   LikelihoodSlope sum{0.0, Eigen::VectorXd::Zero(p), Eigen::MatrixXd::Zero(p, p)};

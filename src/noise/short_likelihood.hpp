@@ -19,6 +19,8 @@ class ShortLikelihood {
   explicit ShortLikelihood(const Likelihood& likelihood);
   [[nodiscard]] bool is_whole() const { return whole_; }
   [[nodiscard]] double value(const std::vector<double>& u) const;
+  /// Maximised over level and drift, not restricted.
+  [[nodiscard]] double at_mean(const std::vector<double>& u) const;
   [[nodiscard]] LikelihoodSlope slope(const std::vector<double>& u) const;
 
  private:

@@ -188,6 +188,22 @@ Bars read_bars(const json& node) {
   return {text(node, "label"), unpack(node.at("edges")), unpack(node.at("heights")), enum_of<Tone>(node, "tone", kTones)};
 }
 
+json write_boxes(const Boxes& boxes) {
+  json node{{"label", boxes.label}};
+  json& list = node["boxes"] = json::array();
+  for (const Boxes::Box& box : boxes.boxes) list.push_back({box.y, box.q05, box.q25, box.median, box.q75, box.q95});
+  put_word(node, "tone", boxes.tone, kTones);
+  return node;
+}
+
+Boxes read_boxes(const json& node) {
+  const auto box = [](const json& values) {
+    const auto v = values.get<std::array<double, 6>>();
+    return Boxes::Box{v[0], v[1], v[2], v[3], v[4], v[5]};
+  };
+  return {text(node, "label"), read_list<Boxes::Box>(node, "boxes", box), enum_of<Tone>(node, "tone", kTones)};
+}
+
 json write_interval(const Interval& interval) {
   json node{{"from", interval.from}, {"to", interval.to}};
   put(node, "label", interval.label);
@@ -224,6 +240,7 @@ json write_plot(const Plot& plot) {
   put_list(node, "lines", plot.lines, write_line);
   put_list(node, "points", plot.points, write_points);
   put_list(node, "bars", plot.bars, write_bars);
+  put_list(node, "boxes", plot.boxes, write_boxes);
   put_list(node, "intervals", plot.intervals, write_interval);
   put_list(node, "bounds", plot.bounds, write_bound);
   put_list(node, "marks", plot.marks, write_mark);
@@ -240,6 +257,7 @@ Plot read_plot(const json& node) {
           read_list<Line>(node, "lines", read_line),
           read_list<Points>(node, "points", read_points),
           read_list<Bars>(node, "bars", read_bars),
+          read_list<Boxes>(node, "boxes", read_boxes),
           read_list<Interval>(node, "intervals", read_interval),
           read_list<Bound>(node, "bounds", read_bound),
           read_list<Mark>(node, "marks", read_mark),

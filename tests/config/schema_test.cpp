@@ -25,7 +25,7 @@ TEST(Schemas, AreOfOneDraft) {
 }
 
 TEST(Schemas, OwnExamplesAreValid) {
-  for (const char* name : {"calibration", "calibration_run", "imu_error_model", "run", "scenario", "study", "summary"}) {
+  for (const char* name : {"calibration", "calibration_run", "estimator_study", "estimator_study_result", "imu_error_model", "run", "scenario", "study", "summary"}) {
     const json examples = test::schema(name).at("examples");
     ASSERT_FALSE(examples.empty()) << name;
     for (const json& example : examples) test::expect_valid(name, example, "example");
@@ -73,6 +73,12 @@ TEST(Schemas, RefuseWhatTheProgramRefuses) {
   EXPECT_TRUE(refused("calibration_run", {{"turn_on_bias", {{"gyro", {{"unit", "mg"}}}}}}));
   EXPECT_TRUE(refused("calibration", {{"axes", nullptr}}));
   EXPECT_FALSE(refused("calibration", {{"more", 1}}));  // outputs may gain keys
+  EXPECT_FALSE(refused("estimator_study", {{"mean", "level"}}));
+  EXPECT_TRUE(refused("estimator_study", {{"runs", nullptr}}));
+  EXPECT_TRUE(refused("estimator_study", {{"estimators", {{{"kind", "em"}}}}}));  // without a start
+  EXPECT_TRUE(refused("estimator_study", {{"truth", {{"processes", {{{"process", "white_noise"}, {"density", 0}}}}}}}));
+  EXPECT_TRUE(refused("estimator_study_result", {{"estimators", json::array()}}));
+  EXPECT_FALSE(refused("estimator_study_result", {{"more", 1}}));  // outputs may gain keys
   EXPECT_TRUE(refused("scenario", {{"trajectory", {{"kind", "rocket"}}}}));
   EXPECT_TRUE(refused("scenario", {{"schema", nullptr}}));
   EXPECT_TRUE(refused("summary", {{"gnss", {{"used", -1}}}}));

@@ -4,6 +4,8 @@
 
 #include <fmt/format.h>
 
+#include <Eigen/QR>
+
 #include "coast/noise/static_signal.hpp"
 #include "noise/static_record.hpp"
 #include "support/support.hpp"
@@ -69,7 +71,8 @@ INSTANTIATE_TEST_SUITE_P(Likelihood, EveryCase, testing::ValuesIn(cases()),
                          [](const testing::TestParamInfo<Case>& c) { return c.param.what; });
 
 struct DenseFit {
-  double log_likelihood;
+  double at_mean;         ///< log-likelihood at the mean that maximises it
+  double log_likelihood;  ///< of what is left when a basis of all but the means is taken of the samples
   Eigen::VectorXd mean;
   Eigen::MatrixXd covariance;
 };
@@ -82,8 +85,17 @@ DenseFit dense_fit(const test::DenseModel& model, Mean mean) {
   fit.mean = fit.covariance * X.transpose() * factor.solve(model.y);
   const Eigen::VectorXd left = model.y - X * fit.mean;
   const Eigen::MatrixXd L = factor.matrixL();
-  fit.log_likelihood = -0.5 * (static_cast<double>(left.size()) * std::log(2.0 * M_PI) +
-                               2.0 * L.diagonal().array().log().sum() + left.dot(factor.solve(left)));
+  const double n = static_cast<double>(left.size());
+  fit.at_mean = -0.5 * (n * std::log(2.0 * M_PI) + 2.0 * L.diagonal().array().log().sum() + left.dot(factor.solve(left)));
+  // Contrasts: n - m orthonormal combinations of the samples that no mean changes. Their density is the restricted likelihood.
+  const Eigen::MatrixXd Q = X.cols() > 0 ? Eigen::MatrixXd(Eigen::HouseholderQR<Eigen::MatrixXd>(X).householderQ())
+                                         : Eigen::MatrixXd(Eigen::MatrixXd::Identity(left.size(), left.size()));
+  const Eigen::MatrixXd A = Q.rightCols(left.size() - X.cols());
+  const Eigen::LLT<Eigen::MatrixXd> of_contrasts(A.transpose() * model.samples * A);
+  const Eigen::VectorXd w = A.transpose() * model.y;
+  const Eigen::MatrixXd K = of_contrasts.matrixL();
+  fit.log_likelihood = -0.5 * ((n - static_cast<double>(X.cols())) * std::log(2.0 * M_PI) +
+                               2.0 * K.diagonal().array().log().sum() + w.dot(of_contrasts.solve(w)));
   return fit;
 }
 
@@ -91,6 +103,7 @@ TEST_P(EveryCase, EqualsTheDenseMultivariateNormal) {
   const DenseFit expected = dense_fit(test::dense(block_, record_), GetParam().mean);
   const LikelihoodValue value = Likelihood({record_}, model_).value(u_);
   EXPECT_NEAR(value.log_likelihood, expected.log_likelihood, 1e-9 * std::abs(expected.log_likelihood));
+  EXPECT_NEAR(value.at_mean, expected.at_mean, 1e-9 * std::abs(expected.at_mean));
   const Eigen::Vector2d per_interval(1.0, GetParam().interval);
   for (Eigen::Index i = 0; i < coefficients(GetParam().mean); ++i) {
     const double sd = std::sqrt(expected.covariance(i, i));
@@ -119,7 +132,11 @@ TEST_P(EveryCase, MomentsAreThoseOfTheDenseNormal) {
   const Eigen::LLT<Eigen::MatrixXd> factor(model.samples);
   const Eigen::VectorXd left = model.y - model.means.leftCols(coefficients(GetParam().mean)) * fit.mean;
   const Eigen::VectorXd x = model.cross * factor.solve(left);
-  const Eigen::MatrixXd second = model.states - model.cross * factor.solve(model.cross.transpose()) + x * x.transpose();
+  // The mean is not known: with it vary what is left of the samples, by X, and the states, by G.
+  const Eigen::MatrixXd X = model.means.leftCols(coefficients(GetParam().mean));
+  const Eigen::MatrixXd G = model.cross * factor.solve(X);
+  const Eigen::MatrixXd second = model.states - model.cross * factor.solve(model.cross.transpose()) + x * x.transpose() +
+                                 G * fit.covariance * G.transpose();
   const Eigen::Index n = static_cast<Eigen::Index>(record_.length()), s = block_.h.size();
 
   std::vector<double> memory;
@@ -130,7 +147,8 @@ TEST_P(EveryCase, MomentsAreThoseOfTheDenseNormal) {
     for (std::size_t i = 0; i < run.count; ++i, ++row) {
       const auto k = static_cast<Eigen::Index>(run.start + i) * s;
       residual += left(row) * left(row) - 2.0 * left(row) * block_.h.dot(x.segment(k, s)) +
-                  (block_.h * second.block(k, k, s, s) * block_.h.transpose()).value();
+                  (block_.h * second.block(k, k, s, s) * block_.h.transpose()).value() +
+                  ((X.row(row) - 2.0 * block_.h * G.middleRows(k, s)) * fit.covariance * X.row(row).transpose()).value();
     }
   for (std::size_t t = 0; t < model_.terms().size(); ++t) {
     const auto& term = model_.terms()[t];

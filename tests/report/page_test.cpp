@@ -35,6 +35,7 @@ Page full_page() {
   plot.lines = {{"line", series, Tone::kSmoothed, Line::Style::kSteps, "1 sigma", 2.0, true}};
   plot.points = {{"dots", series, Tone::kSingle, 3.0}};
   plot.bars = {{"bars", {0.0, 1.0, 2.0}, {3.0, 4.0}, Tone::kX}};
+  plot.boxes = {{"boxes", {{1.0, -2.0, -1.0, 0.5, 1.0, 3.0}}, Tone::kY}};
   plot.intervals = {{0.5, 1.5, "outage", Tone::kBad}};
   plot.bounds = {{3.3, "gate", Tone::kWarn}};
   plot.marks = {{1.0, 2.0, "1"}};
@@ -67,6 +68,8 @@ TEST(PageJson, RoundTripKeepsEveryMember) {
   EXPECT_EQ(plot.points.at(0).tone, Tone::kSingle);
   EXPECT_EQ(plot.points.at(0).radius_px, 3.0);
   EXPECT_EQ(plot.bars.at(0).heights, (std::vector<double>{3.0, 4.0}));
+  EXPECT_EQ(plot.boxes.at(0).boxes.at(0).median, 0.5);
+  EXPECT_EQ(plot.boxes.at(0).boxes.at(0).q95, 3.0);
   EXPECT_EQ(plot.bounds.at(0).tone, Tone::kWarn);
   EXPECT_EQ(plot.intervals.at(0).label, "outage");
   EXPECT_EQ(plot.marks.at(0).label, "1");

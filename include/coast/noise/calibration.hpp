@@ -32,7 +32,9 @@ struct CalibrationOptions {
 struct Candidate {
   SumModel model;
   Fit fit;  ///< of the chosen one to all samples
-  /// What the criteria compare: of a record beyond 40 000 samples on 4000 block means and its first 8000 samples.
+  /// What the criteria compare: log-likelihood maximised over level and drift (that of `fit` is restricted, and sums that
+  /// differ in their mean cannot be compared by it), of a record beyond 40 000 samples on 4000 block means and its first 8000
+  /// samples.
   double compared_log_likelihood = 0.0;
   int parameters = 0;  ///< of the processes and of the means
   double bic = 0.0;

@@ -17,8 +17,10 @@ using FixedParameters = std::vector<bool>;
 struct Fit {
   std::vector<double> u;
   double log_likelihood = 0.0;
-  std::vector<double> trace;  ///< log-likelihood after each iteration; of EM, at the parameters of each E-step
-  int passes = 0;             ///< over the record at full rate: values, gradients and E-steps
+  /// Best log-likelihood after each iteration; of EM, that at the parameters of each E-step; of the direct search on the full
+  /// record after each evaluation, then after each step that was taken.
+  std::vector<double> trace;
+  int passes = 0;  ///< over the record at full rate: values, gradients and E-steps
   bool converged = false;
 };
 
@@ -29,8 +31,8 @@ struct EmOptions {
   std::function<void(double)> progress = {};
 };
 /// Constrained EM (Shumway & Stoffer 1982; Holmes 2010; Stebler et al. 2011): E-step by the smoother with lag-one covariances,
-/// closed-form M-step of each process. Level and drift are set to their generalised least squares before each E-step (ECME),
-/// so the log-likelihood never falls.
+/// closed-form M-step of each process. The E-step is that of the restricted likelihood: level and drift are part of what is not
+/// observed, without prior, so that log-likelihood never falls.
 /// @note close to the optimum it slows to a crawl, and a variance whose optimum is zero it approaches like 1/k, never reaching
 /// it
 /// @throws NumericalError  the log-likelihood is not finite at the start

@@ -17,4 +17,17 @@ struct GaussMarkovParameters {
 };
 [[nodiscard]] ProcessPtr make_gauss_markov(const GaussMarkovParameters& parameters);
 
+/// The first-order forms of Stebler et al. (2011): per step phi = 1 - beta dt, driven with dt * w in Table I, with w itself in
+/// the matrices of sections II.B and II.E, both with var w = 2 beta sigma^2. They agree for dt = 1 s only, and neither keeps
+/// sigma the stationary value.
+enum class FirstOrderForm { kTable1, kSection2e };
+
+/// A stationary first-order Gauss-Markov process by its parameters.
+struct GaussMarkovValues {
+  double beta = 0.0;    ///< 1/s
+  double sigma2 = 0.0;  ///< stationary variance, [signal]^2
+};
+/// The process that steps of a first-order form make.  @param dt s, below 1/beta
+[[nodiscard]] GaussMarkovValues exact_equivalent(const GaussMarkovValues& stated, FirstOrderForm form, double dt);
+
 }  // namespace coast::noise

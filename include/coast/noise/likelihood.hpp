@@ -17,7 +17,8 @@ struct MeanEstimate {
 };
 
 struct LikelihoodValue {
-  double log_likelihood = 0.0;
+  double log_likelihood = 0.0;      ///< restricted: what estimators maximise
+  double at_mean = 0.0;             ///< maximised over level and drift: for comparing sums that differ in their mean
   std::vector<MeanEstimate> means;  ///< one per record
 };
 
@@ -30,11 +31,14 @@ struct LikelihoodSlope {
 
 /// One or several records of one sensor axis with the same processes; every record has a level and a drift of its own.
 ///
-///     log L = -1/2 sum_k (log 2 pi + log S_k + e_k^2 / S_k),     maximised over level and drift
+///     log L = -1/2 sum_k (log 2 pi + log S_k + e_k^2 / S_k) - 1/2 log |X' V^-1 X| / |X' X| + m/2 log 2 pi
 ///
-/// by the Kalman filter, exactly, from the stationary start; holes are predicted across. The record is read once for a value
-/// and once more for the gradient. Where the filter's gain has come to rest (relative 1e-13) it is kept.
-/// @note about 15 ns per sample for a value and 40 ns for a gradient at 3 states and 5 parameters (tools/bench).
+/// with the innovations e_k at the level and drift that maximise it, X their m regressors and V the covariance of the samples:
+/// the restricted log-likelihood (Patterson & Thompson 1971; Harville 1977), which is that of all contrasts of the record that
+/// no level or drift can change (docs/decisions/0008-restricted-likelihood.md). By the Kalman filter, exactly, from the
+/// stationary start; holes are predicted across. The record is read once for a value and twice more for the gradient. Where the
+/// filter's gain has come to rest (relative 1e-13) it is kept.
+/// @note about 15 ns per sample for a value at 3 states (tools/bench).
 class Likelihood {
  public:
   /// @param records  not empty; kept detrended, so a large constant costs no digits. All at the same interval.

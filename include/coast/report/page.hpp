@@ -97,6 +97,21 @@ struct Bars {
   Tone tone = Tone::kAuto;
 };
 
+/// Box plots that lie along x, one on each row: whiskers, box and median are quantiles of a sample.
+struct Boxes {
+  struct Box {
+    double y = 0.0;  ///< its row; a tick of the y axis names it
+    double q05 = 0.0;
+    double q25 = 0.0;
+    double median = 0.0;
+    double q75 = 0.0;
+    double q95 = 0.0;
+  };
+  std::string label;
+  std::vector<Box> boxes;
+  Tone tone = Tone::kAuto;
+};
+
 /// A shaded stretch of the x axis: an outage, a static period.
 struct Interval {
   double from = 0.0;
@@ -127,6 +142,7 @@ struct Plot {
   std::vector<Line> lines;
   std::vector<Points> points;
   std::vector<Bars> bars;
+  std::vector<Boxes> boxes;
   std::vector<Interval> intervals;
   std::vector<Bound> bounds;
   std::vector<Mark> marks;

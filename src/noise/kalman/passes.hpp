@@ -39,6 +39,7 @@ struct ScoreSums {
   double log_likelihood = 0.0;
   Eigen::VectorXd gradient;
   Eigen::MatrixXd information;
+  std::vector<Eigen::Matrix2d> products;  ///< derivatives of sum e_c e_d / S of the columns 1 and tau, one per parameter
 };
 [[nodiscard]] ScoreSums score_pass(const SampleBlock& block, const std::vector<SampleBlock>& derivatives,
                                    const StaticSignal& signal, const MeanCurve& mean);
@@ -48,8 +49,9 @@ struct SmootherScratch {
   std::vector<double> steps;
 };
 /// Second moments of all states given the signal, as BlockMoments of the whole state.
+/// @param doubt  curves whose coefficients are independent normal deviates: what is not known of the mean
 [[nodiscard]] BlockMoments moment_pass(const SampleBlock& block, const StaticSignal& signal, const MeanCurve& mean,
-                                       SmootherScratch& scratch);
+                                       const std::vector<MeanCurve>& doubt, SmootherScratch& scratch);
 
 /// e/sqrt(S), in the order of the values. What lies outside the gate is not believed, so that its neighbours do not look wrong.
 [[nodiscard]] std::vector<double> whitening_pass(const SampleBlock& block, const StaticSignal& signal, const MeanCurve& mean,

@@ -1,34 +1,125 @@
 #include <cmath>
 #include <numbers>
 
-#include "gain.hpp"
+#include "gain_slopes.hpp"
 #include "passes.hpp"
 
 namespace coast::noise {
 
 namespace {
 
+/// The filter of the columns 1 and tau with its derivatives, for the products of their innovations alone:
+///
+///     d(e_c e_d / S) = (de_c e_d + e_c de_d)/S - e_c e_d dS/S^2
+template <int N>
+class MeanColumns {
+ public:
+  MeanColumns(const FixedModel<N>& model, std::size_t count)
+      : model_(model), state_(Columns::Zero()), slopes_(count, state_), products_(count, Eigen::Matrix2d::Zero()) {}
+
+  [[nodiscard]] const std::vector<Eigen::Matrix2d>& products() const { return products_; }
+
+  void skip(const GainSlopes<N>& gains) {
+    for (std::size_t i = 0; i < slopes_.size(); ++i) slopes_[i] = advanced(i, slopes_[i], state_, gains);
+    state_ = (model_.Phi * state_).eval();
+  }
+  void step(double tau, const GainSlopes<N>& gains) {
+    const Eigen::RowVector2d e = Eigen::RowVector2d(1.0, tau) - model_.h * state_;
+    const double S = gains.gain.S;
+    const Columns updated = state_ + gains.gain.k * e;
+    for (std::size_t i = 0; i < slopes_.size(); ++i) {
+      const auto at = static_cast<Eigen::Index>(i);
+      const Eigen::RowVector2d de = -model_.h * slopes_[i];
+      const Eigen::Matrix2d cross = de.transpose() * e;
+      products_[i] += (cross + cross.transpose()) / S - gains.dS(at) / (S * S) * e.transpose() * e;
+      slopes_[i] = advanced(i, slopes_[i] + gains.gain.k * de + gains.dk.col(at) * e, updated, gains);
+    }
+    state_ = model_.Phi * updated;
+  }
+  /// Where the gains rest. A filter at rest follows a ramp by a ramp: once second differences are gone, the rest is summed.
+  void rest(std::size_t count, double tau, double tau_step, const GainSlopes<N>& gains) {
+    const auto tau_at = [&](std::size_t i) { return tau + static_cast<double>(i) * tau_step; };
+    std::size_t done = 0;
+    while (done < count) {
+      if (count - done < 3 * kStride) {
+        step(tau_at(done++), gains);
+        continue;
+      }
+      const Eigen::MatrixXd first = innovations(tau_at(done));
+      for (std::size_t i = 0; i < kStride; ++i) step(tau_at(done++), gains);
+      const Eigen::MatrixXd second = innovations(tau_at(done));
+      const std::vector<Columns> before = states();
+      for (std::size_t i = 0; i < kStride; ++i) step(tau_at(done++), gains);
+      const Eigen::MatrixXd third = innovations(tau_at(done));
+      if ((first - 2.0 * second + third).cwiseAbs().maxCoeff() > kStraight) continue;
+      leap(count - done, third, (third - second) / static_cast<double>(kStride), before, gains);
+      return;
+    }
+  }
+
+ private:
+  using Columns = Eigen::Matrix<double, N, 2>;
+  static constexpr std::size_t kStride = 64;
+  static constexpr double kStraight = 1e-12;  // against columns of size 1
+
+  [[nodiscard]] Columns advanced(std::size_t i, const Columns& slope, const Columns& updated,
+                                 const GainSlopes<N>& gains) const {
+    const auto at = static_cast<Eigen::Index>(i);
+    Columns next = model_.Phi * slope;
+    if (gains.moves(at)) next += gains.dPhi(at) * updated;
+    return next;
+  }
+  /// Rows: of the columns, then their derivatives.
+  [[nodiscard]] Eigen::MatrixXd innovations(double tau) const {
+    Eigen::MatrixXd e(static_cast<Eigen::Index>(slopes_.size()) + 1, 2);
+    e.row(0) = Eigen::RowVector2d(1.0, tau) - model_.h * state_;
+    for (std::size_t i = 0; i < slopes_.size(); ++i) e.row(static_cast<Eigen::Index>(i) + 1) = -model_.h * slopes_[i];
+    return e;
+  }
+  [[nodiscard]] std::vector<Columns> states() const {
+    std::vector<Columns> all{state_};
+    all.insert(all.end(), slopes_.begin(), slopes_.end());
+    return all;
+  }
+  /// `count` steps at once: innovations from `start` on, changing by `change` each. @param before  states a stride ago
+  void leap(std::size_t count, const Eigen::MatrixXd& start, const Eigen::MatrixXd& change, const std::vector<Columns>& before,
+            const GainSlopes<N>& gains) {
+    const auto n = static_cast<double>(count);
+    const double ones = n * (n - 1.0) / 2.0;
+    const double squares = (n - 1.0) * n * (2.0 * n - 1.0) / 6.0;
+    const auto sum_of = [&](Eigen::Index i, Eigen::Index j) -> Eigen::Matrix2d {
+      return n * start.row(i).transpose() * start.row(j) + squares * change.row(i).transpose() * change.row(j) +
+             ones * (start.row(i).transpose() * change.row(j) + change.row(i).transpose() * start.row(j));
+    };
+    const double S = gains.gain.S;
+    const Eigen::Matrix2d plain = sum_of(0, 0);
+    const double strides = n / static_cast<double>(kStride);
+    for (std::size_t i = 0; i < slopes_.size(); ++i) {
+      const auto at = static_cast<Eigen::Index>(i);
+      const Eigen::Matrix2d cross = sum_of(at + 1, 0);
+      products_[i] += (cross + cross.transpose()) / S - gains.dS(at) / (S * S) * plain;
+      slopes_[i] += (slopes_[i] - before[i + 1]).eval() * strides;
+    }
+    state_ += (state_ - before[0]).eval() * strides;
+  }
+
+  const FixedModel<N>& model_;
+  Columns state_;
+  std::vector<Columns> slopes_;
+  std::vector<Eigen::Matrix2d> products_;
+};
+
 /// Filter and its derivatives side by side. With a_upd = a + k e:
 ///
 ///     de = -h da,    d a' = Phi (da + k de + dk e) + dPhi a_upd
-///     dS = h dP h' + dr,    dk = (dP h' - k dS)/S,    dP' = Phi dP_upd Phi' + dPhi P_upd Phi' + Phi P_upd dPhi' + dQ
 template <int N>
 class ScorePass {
  public:
   ScorePass(const SampleBlock& block, const std::vector<SampleBlock>& derivatives)
-      : model_(block), gain_(model_), count_(static_cast<Eigen::Index>(derivatives.size())) {
-    for (const SampleBlock& derivative : derivatives) {
-      slopes_.emplace_back(derivative);
-      dP_.push_back(slopes_.back().P1);
-      moves_.push_back(!slopes_.back().Phi.isZero(0.0));
-    }
-    rest_.resize(derivatives.size());
-    dk_.setZero(N, count_);
+      : model_(block), slopes_(model_, derivatives), count_(slopes_.count()), columns_(model_, derivatives.size()) {
     da_.setZero(N, count_);
-    dS_.setZero(count_);
     sums_.gradient.setZero(count_);
     sums_.information.setZero(count_, count_);
-    gains();
   }
 
   ScoreSums run(const StaticSignal& signal, const MeanCurve& mean) {
@@ -38,19 +129,24 @@ class ScorePass {
     for (const StaticSignal::Run& run : signal.runs) {
       for (; at < run.start; ++at) skip();
       std::size_t i = 0;
-      for (; i < run.count && !steady_; ++i) step(signal.values[run.first + i] - mean.level - mean.drift * time.at(at + i));
+      for (; i < run.count && !slopes_.steady(); ++i) {
+        columns_.step(time.at(at + i), slopes_);
+        step(signal.values[run.first + i] - mean.level - mean.drift * time.at(at + i));
+      }
+      columns_.rest(run.count - i, time.at(at + i), time.step(), slopes_);
       rest_of_run({signal.values.data() + run.first + i, run.count - i},
                   {mean.level + mean.drift * time.at(at + i), mean.drift * time.step()});
       at += run.count;
       samples += static_cast<double>(run.count);
     }
     sums_.log_likelihood -= 0.5 * samples * std::log(2.0 * std::numbers::pi);
+    sums_.products = columns_.products();
     return sums_;
   }
 
  private:
   using Model = FixedModel<N>;
-  using Slopes = Eigen::Matrix<double, N, Eigen::Dynamic, 0, N, kMostParameters>;
+  using Slopes = typename GainSlopes<N>::Slopes;
   using Row = Eigen::Matrix<double, 1, Eigen::Dynamic, Eigen::RowMajor, 1, kMostParameters>;
   using Square = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, kMostParameters, kMostParameters>;
   struct Ramp {
@@ -58,77 +154,39 @@ class ScorePass {
     double step;
   };
 
-  void gains() {
-    for (Eigen::Index i = 0; i < count_; ++i) {
-      const typename Model::Vector dPh = dP_[at(i)] * model_.h.transpose();
-      dS_(i) = model_.h.dot(dPh) + slopes_[at(i)].white;
-      dk_.col(i) = (dPh - gain_.k * dS_(i)) / gain_.S;
-    }
-  }
-  static std::size_t at(Eigen::Index i) { return static_cast<std::size_t>(i); }
-
-  /// @param right  P_upd Phi'
-  void predict_derivative(Eigen::Index i, const typename Model::Matrix& right, const typename Model::Matrix& dP_upd) {
-    const Model& slope = slopes_[at(i)];
-    typename Model::Matrix next = model_.sparse.congruence(dP_upd);
-    // dPhi P_upd Phi' = ((P_upd Phi')' dPhi')'
-    if (moves_[at(i)]) next += 2.0 * slope.sparse.right(right.transpose());
-    dP_[at(i)] = 0.5 * (next + next.transpose()) + slope.Q;
-  }
   void advance_states(const typename Model::Vector& a_upd) {
     da_ = (model_.Phi * da_).eval();
     for (Eigen::Index i = 0; i < count_; ++i)
-      if (moves_[at(i)]) da_.col(i) += slopes_[at(i)].Phi * a_upd;
+      if (slopes_.moves(i)) da_.col(i) += slopes_.dPhi(i) * a_upd;
     a_ = model_.Phi * a_upd;
   }
 
   void skip() {
     advance_states(typename Model::Vector(a_));
-    const typename Model::Matrix right = model_.sparse.right(gain_.P);
-    for (Eigen::Index i = 0; i < count_; ++i) predict_derivative(i, right, typename Model::Matrix(dP_[at(i)]));
-    gain_.skip();
-    gains();
-    steady_ = false;
+    columns_.skip(slopes_);
+    slopes_.skip();
   }
 
   void step(double y) {
     const double e = y - model_.h.dot(a_);
     const Row de = -model_.h * da_;
-    const double S = gain_.S;
+    const double S = slopes_.gain.S;
+    const Eigen::VectorXd& dS = slopes_.dS;
     sums_.log_likelihood -= 0.5 * (std::log(S) + e * e / S);
-    sums_.gradient -= 0.5 / S * ((1.0 - e * e / S) * dS_ + 2.0 * e * de.transpose());
+    sums_.gradient -= 0.5 / S * ((1.0 - e * e / S) * dS + 2.0 * e * de.transpose());
     sums_.information.noalias() += de.transpose() * de / S;
-    sums_.information.noalias() += 0.5 / (S * S) * dS_ * dS_.transpose();
-    da_ += gain_.k * de + e * dk_;
-    advance_states(typename Model::Vector(a_ + gain_.k * e));
-    const typename Model::Matrix right = model_.sparse.right(gain_.P - S * gain_.k * gain_.k.transpose());
-    for (Eigen::Index i = 0; i < count_; ++i) {
-      const typename Model::Matrix cross = dk_.col(i) * gain_.k.transpose();
-      predict_derivative(i, right, dP_[at(i)] - dS_(i) * gain_.k * gain_.k.transpose() - S * (cross + cross.transpose()));
-    }
-    gain_.step();
-    gains();
-    look();
-  }
-
-  /// At rest are filter and derivatives, or neither.
-  void look() {
-    if (++since_look_ < SteadyState<N>::kStride) return;
-    since_look_ = 0;
-    bool all = gain_.steady();
-    for (std::size_t i = 0; i < rest_.size(); ++i) {
-      // Measured against P itself: the derivatives are with respect to logarithms.
-      all = rest_[i].reached(gain_.P + dP_[i]) && all;
-    }
-    steady_ = all;
+    sums_.information.noalias() += 0.5 / (S * S) * dS * dS.transpose();
+    da_ += slopes_.gain.k * de + e * slopes_.dk;
+    advance_states(typename Model::Vector(a_ + slopes_.gain.k * e));
+    slopes_.step();
   }
 
   void rest_of_run(std::span<const double> values, const Ramp& mean) {
     if (values.empty()) return;
     const typename Model::Row h = model_.h;
     const typename Model::Matrix Phi = model_.Phi;
-    const typename Model::Vector k = gain_.k;
-    const Slopes Phi_dk = Phi * dk_;
+    const typename Model::Vector k = slopes_.gain.k;
+    const Slopes Phi_dk = Phi * slopes_.dk;
     const typename Model::Vector Phi_k = Phi * k;
     typename Model::Vector a = a_;
     Slopes da = da_;
@@ -148,33 +206,27 @@ class ScorePass {
       next.noalias() = Phi * da;
       for (Eigen::Index i = 0; i < count_; ++i) {
         next.col(i) += Phi_k * de(i) + Phi_dk.col(i) * e;
-        if (moves_[at(i)]) next.col(i) += slopes_[at(i)].Phi * a_upd;
+        if (slopes_.moves(i)) next.col(i) += slopes_.dPhi(i) * a_upd;
       }
       da.swap(next);
       a.noalias() = Phi * a_upd;
     }
     a_ = a;
     da_ = da;
-    const double S = gain_.S;
+    const double S = slopes_.gain.S;
+    const Eigen::VectorXd& dS = slopes_.dS;
     const auto n = static_cast<double>(values.size());
     sums_.log_likelihood -= 0.5 * (n * std::log(S) + ee / S);
-    sums_.gradient -= 0.5 / S * ((n - ee / S) * dS_ + 2.0 * e_de.transpose());
-    sums_.information += Square(de_de.template selfadjointView<Eigen::Lower>()) / S + 0.5 * n / (S * S) * dS_ * dS_.transpose();
+    sums_.gradient -= 0.5 / S * ((n - ee / S) * dS + 2.0 * e_de.transpose());
+    sums_.information += Square(de_de.template selfadjointView<Eigen::Lower>()) / S + 0.5 * n / (S * S) * dS * dS.transpose();
   }
 
   Model model_;
-  Gain<N> gain_;
+  GainSlopes<N> slopes_;
   Eigen::Index count_;
-  std::vector<Model> slopes_;
-  std::vector<bool> moves_;  ///< the derivative has a part in Phi
-  std::vector<typename Model::Matrix> dP_;
-  std::vector<SteadyState<N>> rest_;
-  Slopes dk_;
+  MeanColumns<N> columns_;
   Slopes da_;
-  Eigen::VectorXd dS_;
   typename Model::Vector a_ = Model::Vector::Zero();
-  int since_look_ = 0;
-  bool steady_ = false;
   ScoreSums sums_;
 };
 

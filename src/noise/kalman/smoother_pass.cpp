@@ -22,9 +22,12 @@ class SmootherPass {
 
   SmootherPass(const SampleBlock& block, SmootherScratch& scratch) : model_(block), steps_(scratch.steps) {}
 
-  void forward(const StaticSignal& signal, const MeanCurve& mean) {
+  /// @param share  of the signal: 0 smooths minus the mean alone
+  void forward(const StaticSignal& signal, const MeanCurve& mean, double share = 1.0) {
     const GridTime time(signal);
     Gain<N> gain(model_);
+    gains_.clear();
+    resting_ = false;
     Vector a = Vector::Zero();
     steps_.resize(static_cast<std::size_t>(signal.length()) * kPerStep);
     double* out = steps_.data();
@@ -42,7 +45,7 @@ class SmootherPass {
         gain.skip();
       }
       for (std::size_t i = 0; i < run.count; ++i, ++at) {
-        const double e = signal.values[run.first + i] - mean.level - mean.drift * time.at(at) - model_.h.dot(a);
+        const double e = share * signal.values[run.first + i] - mean.level - mean.drift * time.at(at) - model_.h.dot(a);
         if (!gain.steady() || i == 0 || !resting_) store(gain, at, true);
         resting_ = gain.steady();
         put(e);
@@ -139,6 +142,7 @@ struct MomentSums {
     after = x;
   }
   void covariance(std::size_t step, const Matrix& V, const Matrix& lag, bool observed, double times) {
+    if (!with_covariances) return;
     products += times * V;
     if (step + 1 < count) lagged += times * lag;
     if (step + 1 == count) last += V;
@@ -148,6 +152,7 @@ struct MomentSums {
 
   std::size_t count;
   Row h;
+  bool with_covariances = true;
   Matrix products = Matrix::Zero();
   Matrix lagged = Matrix::Zero();
   Matrix first = Matrix::Zero();
@@ -157,11 +162,19 @@ struct MomentSums {
 };
 
 template <int N>
-BlockMoments moments(const SampleBlock& block, const StaticSignal& signal, const MeanCurve& mean, SmootherScratch& scratch) {
+BlockMoments moments(const SampleBlock& block, const StaticSignal& signal, const MeanCurve& mean,
+                     const std::vector<MeanCurve>& doubt, SmootherScratch& scratch) {
   SmootherPass<N> pass(block, scratch);
   pass.forward(signal, mean);
   MomentSums<N> sums{pass.steps(), pass.model().h};
   pass.backward(sums);
+  // The smoother is linear: what it makes of a curve adds to the second moments as the curve's coefficient varies.
+  sums.with_covariances = false;
+  for (const MeanCurve& curve : doubt) {
+    pass.forward(signal, curve, 0.0);
+    sums.after.setZero();
+    pass.backward(sums);
+  }
   const Eigen::Index n = block.h.size();
   const auto cut = [n](const auto& m) { return Eigen::MatrixXd(m.topLeftCorner(n, n)); };
   BlockMoments result;
@@ -215,8 +228,8 @@ SmoothedOutputs smoothed_outputs(const SampleBlock& block, const Eigen::MatrixXd
 }  // namespace
 
 BlockMoments moment_pass(const SampleBlock& block, const StaticSignal& signal, const MeanCurve& mean,
-                         SmootherScratch& scratch) {
-  return with_size(block.h.size(), [&](auto size) { return moments<size()>(block, signal, mean, scratch); });
+                         const std::vector<MeanCurve>& doubt, SmootherScratch& scratch) {
+  return with_size(block.h.size(), [&](auto size) { return moments<size()>(block, signal, mean, doubt, scratch); });
 }
 
 SmoothedOutputs smoothing_pass(const SampleBlock& block, const Eigen::MatrixXd& rows, const StaticSignal& signal,

@@ -7,6 +7,7 @@
 
 #include "autoregression.hpp"
 #include "bounded_search.hpp"
+#include "coast/noise/partial_autocorrelation.hpp"
 #include "entry.hpp"
 #include "processes/estimables.hpp"
 #include "processes/processes.hpp"
@@ -289,6 +290,12 @@ void EstimableAr::maximise(const BlockMoments& m, double, const std::vector<bool
 }
 
 }  // namespace
+
+std::optional<std::vector<double>> partial_autocorrelations(std::span<const double> coefficients) {
+  const std::optional<VectorXd> partial = to_partial(Eigen::Map<const VectorXd>(coefficients.data(), std::ssize(coefficients)));
+  if (!partial) return {};
+  return std::vector<double>(partial->begin(), partial->end());
+}
 
 const Estimable& estimable_ar(int order) {
   static const std::array<EstimableAr, 4> orders{EstimableAr(1), EstimableAr(2), EstimableAr(3), EstimableAr(4)};

@@ -72,28 +72,22 @@ class GaussMarkov : public ScalarProcess {
   GaussMarkovParameters p_;
 };
 
-enum class Form { kTable1, kSection2e };
-
-/// The paper's first-order forms: per step of the model's rate phi = 1 - beta dt, driven with dt * w in Table I, with w itself
-/// in the matrices of sections II.B and II.E, both with var w = 2 beta sigma^2. They agree for dt = 1 s only, and neither keeps
-/// sigma the stationary value. Other intervals are as many of these steps: an exact process of another beta and sigma.
-GaussMarkovParameters exact_equivalent(const GaussMarkovParameters& stated, Form form, double rate_hz) {
-  const double dt = 1.0 / rate_hz;
-  const double drive = 2.0 * stated.beta * stated.sigma * stated.sigma * (form == Form::kTable1 ? dt * dt : 1.0);
-  const double lost = stated.beta * dt;  // 1 - phi
+/// Other intervals are as many steps of the model's rate: an exact process of another beta and sigma.
+GaussMarkovParameters exact_equivalent(const GaussMarkovParameters& stated, FirstOrderForm form, double rate_hz) {
+  const GaussMarkovValues values = noise::exact_equivalent({stated.beta, stated.sigma * stated.sigma}, form, 1.0 / rate_hz);
   GaussMarkovParameters exact = stated;
-  exact.beta = -std::log1p(-lost) * rate_hz;
-  exact.sigma = std::sqrt(drive / (lost * (2.0 - lost)));
+  exact.beta = values.beta;
+  exact.sigma = std::sqrt(values.sigma2);
   return exact;
 }
 
 class FirstOrderGaussMarkov final : public GaussMarkov {
  public:
-  FirstOrderGaussMarkov(const GaussMarkovParameters& stated, Form form, double rate_hz)
+  FirstOrderGaussMarkov(const GaussMarkovParameters& stated, FirstOrderForm form, double rate_hz)
       : GaussMarkov(exact_equivalent(stated, form, rate_hz)), stated_(stated), form_(form) {}
   [[nodiscard]] std::string yaml() const override {
     std::string text = GaussMarkov(stated_).yaml();
-    text.insert(text.size() - 1, form_ == Form::kTable1 ? ", first_order: table1" : ", first_order: section2e");
+    text.insert(text.size() - 1, form_ == FirstOrderForm::kTable1 ? ", first_order: table1" : ", first_order: section2e");
     return text;
   }
 
@@ -102,7 +96,7 @@ class FirstOrderGaussMarkov final : public GaussMarkov {
 
  private:
   GaussMarkovParameters stated_;
-  Form form_;
+  FirstOrderForm form_;
 };
 
 std::vector<ProcessPtr> make_gauss_markov(const config::Node& entry, const EntryContext& context) {
@@ -114,7 +108,7 @@ std::vector<ProcessPtr> make_gauss_markov(const config::Node& entry, const Entry
     throw entry.at("correlation_time_s").error(entry.at("correlation_time_s").text(), "a correlation time above zero");
   const auto first_order = entry.find("first_order");
   if (!first_order) return {make_gauss_markov(parameters)};
-  const Form form = first_order->choice({"table1", "section2e"}) == 0 ? Form::kTable1 : Form::kSection2e;
+  const auto form = static_cast<FirstOrderForm>(first_order->choice({"table1", "section2e"}));
   if (!(context.rate_hz > parameters.beta))
     throw first_order->error("a first-order form at a rate of " + fmt::format("{}", context.rate_hz) + " Hz",
                              "the model's rate_hz, above 1/correlation_time_s");
@@ -221,6 +215,12 @@ void EstimableGaussMarkov::maximise(const BlockMoments& m, double interval, cons
 const Estimable& estimable_gauss_markov() {
   static const EstimableGaussMarkov process;
   return process;
+}
+
+GaussMarkovValues exact_equivalent(const GaussMarkovValues& stated, FirstOrderForm form, double dt) {
+  const double drive = 2.0 * stated.beta * stated.sigma2 * (form == FirstOrderForm::kTable1 ? dt * dt : 1.0);
+  const double lost = stated.beta * dt;  // 1 - phi
+  return {-std::log1p(-lost) / dt, drive / (lost * (2.0 - lost))};
 }
 
 ProcessPtr make_gauss_markov(const GaussMarkovParameters& parameters) {

@@ -1,6 +1,6 @@
 // Packed arrays to typed arrays; the counterpart of src/report/pack.cpp.
 import { unzlibSync } from "fflate";
-import type { Packed, StoredBars, StoredLine, StoredPlot, StoredPoints, StoredSeries } from "./model";
+import type { Packed, StoredBars, StoredBoxes, StoredLine, StoredPlot, StoredPoints, StoredSeries } from "./model";
 
 export type Numbers = Float32Array | Float64Array;
 
@@ -38,9 +38,16 @@ export interface Bars {
   heights: Numbers;
 }
 
+export interface Boxes {
+  label: string;
+  tone: string;
+  boxes: StoredBoxes["boxes"];
+}
+
 export interface Content {
   curves: Curve[];
   bars: Bars[];
+  boxes: Boxes[];
 }
 
 function words(packed: Packed): Uint32Array {
@@ -126,6 +133,7 @@ export function decodePlot(plot: StoredPlot, toneOf: (label: string, tone?: stri
   return {
     curves: [...(plot.lines ?? []).map(line), ...(plot.points ?? []).map(points)],
     bars: (plot.bars ?? []).map(bars),
+    boxes: (plot.boxes ?? []).map((b) => ({ label: b.label, tone: toneOf(b.label, b.tone), boxes: b.boxes })),
   };
 }
 

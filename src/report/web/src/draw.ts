@@ -1,5 +1,5 @@
 // What a plot shows, drawn on a canvas between the axes. Coordinates are canvas pixels.
-import { visible, type Band, type Bars, type Curve, type Series } from "./decode";
+import { visible, type Band, type Bars, type Boxes, type Curve, type Series } from "./decode";
 import type { Bound, Interval, Mark, Range } from "./model";
 import { colour, tone } from "./tones";
 
@@ -211,6 +211,38 @@ export function drawBars(f: Frame, bars: Bars): void {
     ctx.fillRect(left, top, Math.max(1, X(bars.edges[i + 1]) - left - f.dpr), base - top);
   }
   ctx.globalAlpha = 1;
+}
+
+/** Whiskers from 5 to 95 %, a box from 25 to 75 %, a stroke at the median. */
+export function drawBoxes(f: Frame, boxes: Boxes): void {
+  const { ctx } = f;
+  const X = mapX(f);
+  const Y = mapY(f);
+  const half = Math.min(9 * f.dpr, (0.3 * f.height) / Math.max(1, f.y.max - f.y.min));
+  ctx.strokeStyle = ctx.fillStyle = tone(boxes.tone);
+  ctx.lineWidth = 1.3 * f.dpr;
+  for (const [y, q05, q25, q50, q75, q95] of boxes.boxes) {
+    const [low, left, middle, right, high] = [q05, q25, q50, q75, q95].map(X);
+    const py = Y(y);
+    ctx.globalAlpha = BAND_ALPHA;
+    ctx.fillRect(left, py - half, right - left, 2 * half);
+    ctx.globalAlpha = 1;
+    ctx.strokeRect(left, py - half, right - left, 2 * half);
+    ctx.beginPath();
+    for (const [end, side] of [[low, left], [high, right]]) {
+      ctx.moveTo(end, py - half / 2);
+      ctx.lineTo(end, py + half / 2);
+      ctx.moveTo(end, py);
+      ctx.lineTo(side, py);
+    }
+    ctx.stroke();
+    ctx.lineWidth = 2.6 * f.dpr;
+    ctx.beginPath();
+    ctx.moveTo(middle, py - half);
+    ctx.lineTo(middle, py + half);
+    ctx.stroke();
+    ctx.lineWidth = 1.3 * f.dpr;
+  }
 }
 
 export function drawIntervals(f: Frame, intervals: Interval[]): void {

@@ -25,6 +25,7 @@ export function xExtent(content: Content, log: boolean): Range {
   let range: Range = { ...EMPTY };
   for (const c of content.curves) range = extend(range, c.series.x, log);
   for (const b of content.bars) range = extend(range, b.edges, log);
+  for (const b of content.boxes) for (const [, ...quantiles] of b.boxes) range = extend(range, Float64Array.from(quantiles), log);
   return range;
 }
 
@@ -47,6 +48,7 @@ export function yExtent(content: Content, shown: (label: string) => boolean, x: 
     range = extend(range, b.heights, log);
     if (!log) range = join(range, { min: 0, max: 0 });
   }
+  for (const b of content.boxes) if (shown(b.label)) range = extend(range, Float64Array.from(b.boxes, (box) => box[0]), log);
   return range;
 }
 

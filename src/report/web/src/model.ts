@@ -51,6 +51,12 @@ export interface StoredBars {
   tone?: string;
 }
 
+export interface StoredBoxes {
+  label: string;
+  boxes: [number, number, number, number, number, number][]; // y, then the quantiles 5, 25, 50, 75, 95 %
+  tone?: string;
+}
+
 export interface Interval {
   from: number;
   to: number;
@@ -77,6 +83,7 @@ export interface StoredPlot {
   lines?: StoredLine[];
   points?: StoredPoints[];
   bars?: StoredBars[];
+  boxes?: StoredBoxes[];
   intervals?: Interval[];
   bounds?: Bound[];
   marks?: Mark[];

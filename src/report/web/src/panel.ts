@@ -68,6 +68,7 @@ export class PanelView {
         if (!entries.has(c.label)) entries.set(c.label, { label: c.label, tone: c.tone, kind, band: c.bandLabel });
       }
       for (const b of content.bars) entries.set(b.label, { label: b.label, tone: b.tone, kind: "bar", band: "" });
+      for (const b of content.boxes) entries.set(b.label, { label: b.label, tone: b.tone, kind: "bar", band: "" });
     }
     if (entries.size === 0) return null;
     const legend = el("div", { class: "legend", role: "group", "aria-label": "curves; click to switch one on or off, shift-click for it alone" });

@@ -2,7 +2,7 @@
 import uPlot from "uplot";
 import { xAxis, yAxis } from "./axes";
 import type { Content } from "./decode";
-import { clipped, drawBars, drawBounds, drawCurves, drawIntervalLabels, drawIntervals, drawMarks, drawScaleBar, type Frame } from "./draw";
+import { clipped, drawBars, drawBounds, drawBoxes, drawCurves, drawIntervalLabels, drawIntervals, drawMarks, drawScaleBar, type Frame } from "./draw";
 import { equalAspect, padded, shifted, withBounds, xExtent, yExtent, zoomed } from "./extent";
 import { TIME, type Hub, type Member } from "./hub";
 import type { Range, StoredPlot } from "./model";
@@ -235,6 +235,7 @@ export class PlotView implements Member {
     const { stored, content } = this;
     clipped(f, () => {
       for (const b of content.bars) if (this.options.shown(b.label)) drawBars(f, b);
+      for (const b of content.boxes) if (this.options.shown(b.label)) drawBoxes(f, b);
       drawCurves(f, content.curves.filter((c) => this.options.shown(c.label)));
       drawBounds(f, stored.bounds ?? []);
       drawIntervalLabels(f, stored.intervals ?? []);

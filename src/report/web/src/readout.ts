@@ -40,6 +40,12 @@ export class Readout {
       if (bin < 0 || bin >= bars.heights.length || !this.shown(bars.label)) continue;
       this.item(bars.tone, "bar", bars.label, `${bars.heights[bin]}`);
     }
+    for (const { tone, label, boxes } of this.content.boxes) {
+      for (const [, q05, , median, , q95] of boxes) {
+        if (y === null || !this.shown(label) || x < q05 || x > q95) continue;
+        this.item(tone, "bar", label, `${median.toPrecision(3)} (${q05.toPrecision(3)} to ${q95.toPrecision(3)})`);
+      }
+    }
     return null;
   }
 
