@@ -37,10 +37,9 @@ Json parameter_json(const CalibratedAxis& axis, std::size_t i) {
 }
 
 Json candidate_json(const noise::Candidate& c, bool chosen) {
-  Json j = {{"model", c.model.name()},
-            {"log_likelihood", c.fit.log_likelihood},
-            {"compared_log_likelihood", c.compared_log_likelihood},
-            {"parameters", c.parameters}};
+  Json j = {{"model", c.model.name()}, {"parameters", c.parameters}};
+  put(j, "log_likelihood", c.fit.log_likelihood);
+  put(j, "compared_log_likelihood", c.compared_log_likelihood);
   put(j, "bic", c.bic);
   put(j, "aicc", c.aicc);
   put(j, "held_out_per_sample", c.held_out);
