@@ -13,7 +13,7 @@ namespace coast::cli {
 namespace {
 
 // Also the example of docs/schema/calibration_run.schema.json; a test holds them together.
-constexpr std::string_view kExample = R"(schema: coast.calibration_run/1
+constexpr std::string_view kCalibrationExample = R"(schema: coast.calibration_run/1
 sensor: Analog Devices ADIS16405
 records:
   - {file: static1.csv, from_s: 60}
@@ -90,7 +90,7 @@ double sigma_from(const Node& node, Sensor sensor) {
   }
 }
 
-int whole_within(const Node& root, std::string_view key, long fallback, long low, long high) {
+int count_within(const Node& root, std::string_view key, long fallback, long low, long high) {
   const long value = root.integer(key, fallback);
   if (value < low || value > high)
     throw root.at(key).error(fmt::format("{}", value), fmt::format("a whole number from {} to {}", low, high));
@@ -99,13 +99,13 @@ int whole_within(const Node& root, std::string_view key, long fallback, long low
 
 noise::CalibrationOptions options_from(const Node& root) {
   noise::CalibrationOptions options;
-  options.most_gauss_markov = whole_within(root, "most_gauss_markov", options.most_gauss_markov, 0, 6);
+  options.most_gauss_markov = count_within(root, "most_gauss_markov", options.most_gauss_markov, 0, 6);
   options.criterion = static_cast<noise::Criterion>(root.choice("criterion", {"bic", "aicc", "held_out"}, 0));
   options.held_out = root.flag("held_out", false);
   options.exclude_outliers = root.choice("outliers", {"keep", "exclude"}, 0) == 1;
-  options.realisations = whole_within(root, "realisations", options.realisations, 0, 100000);
-  options.bootstrap = whole_within(root, "bootstrap", 0, 0, 100000);
-  options.seed = static_cast<std::uint64_t>(whole_within(root, "seed", 1, 0, 2147483647));
+  options.realisations = count_within(root, "realisations", options.realisations, 0, 100000);
+  options.bootstrap = count_within(root, "bootstrap", 0, 0, 100000);
+  options.seed = static_cast<std::uint64_t>(count_within(root, "seed", 1, 0, 2147483647));
   return options;
 }
 
@@ -136,7 +136,8 @@ CalibrationConfig from_yaml(const std::filesystem::path& file) {
 
 std::string calibration_example(const std::string& indent) {
   std::string text = indent;
-  for (const char c : kExample.substr(0, kExample.size() - 1)) text += c == '\n' ? "\n" + indent : std::string(1, c);
+  for (const char c : kCalibrationExample.substr(0, kCalibrationExample.size() - 1))
+    text += c == '\n' ? "\n" + indent : std::string(1, c);
   return text;
 }
 

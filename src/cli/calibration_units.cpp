@@ -91,7 +91,7 @@ std::string si_unit_of(std::string_view unit, noise::Sensor sensor) {
 std::string term_name(const noise::SumModel& model, std::size_t term) {
   const auto& terms = model.terms();
   const auto same = [&](const noise::SumModel::Term& other) { return other.process == terms[term].process; };
-  const std::string symbol(terms[term].process->symbol());
+  std::string symbol(terms[term].process->symbol());
   if (std::ranges::count_if(terms, same) == 1) return symbol;
   return fmt::format("{} {}", symbol,
                      std::count_if(terms.begin(), terms.begin() + static_cast<std::ptrdiff_t>(term) + 1, same));

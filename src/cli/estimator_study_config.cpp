@@ -15,7 +15,7 @@ namespace coast::cli {
 namespace {
 
 // Also the example of docs/schema/estimator_study.schema.json; a test holds them together.
-constexpr std::string_view kExample = R"(schema: coast.estimator_study/1
+constexpr std::string_view kStudyExample = R"(schema: coast.estimator_study/1
 truth:
   processes: [{process: white_noise, density: 0.09}, {process: gauss_markov, beta: 0.008, sigma2: 0.25}]
   slope: 1e-4
@@ -220,7 +220,7 @@ EstimatorStudyConfig read_estimator_study(const std::filesystem::path& file) {
 
 std::string estimator_study_example(const std::string& indent) {
   std::string text = indent;
-  for (const char c : kExample.substr(0, kExample.size() - 1)) text += c == '\n' ? "\n" + indent : std::string(1, c);
+  for (const char c : kStudyExample.substr(0, kStudyExample.size() - 1)) text += c == '\n' ? "\n" + indent : std::string(1, c);
   return text;
 }
 

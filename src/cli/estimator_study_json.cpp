@@ -13,7 +13,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-void put(Json& j, const char* key, const std::optional<double>& value) {
+void put_number(Json& j, const char* key, const std::optional<double>& value) {
   if (value && std::isfinite(*value)) j[key] = *value;
 }
 
@@ -32,17 +32,17 @@ Json coverage_json(const noise::Coverage& coverage) {
 
 Json parameter_json(const EstimatorStudyConfig& config, const noise::ParameterSummary& p) {
   Json j = {{"name", p.name}, {"unit", config.unit(p.unit)}};
-  put(j, "truth", p.truth);
-  put(j, "cramer_rao_sd", p.bound);
+  put_number(j, "truth", p.truth);
+  put_number(j, "cramer_rao_sd", p.bound);
   j["mean"] = p.mean;
   if (p.truth) j["bias"] = p.mean - *p.truth;
-  if (p.truth && p.bound) put(j, "bias_to_bound", (p.mean - *p.truth) / *p.bound);
+  if (p.truth && p.bound) put_number(j, "bias_to_bound", (p.mean - *p.truth) / *p.bound);
   j["sd"] = p.sd;
-  if (p.bound) put(j, "sd_to_bound", p.sd / *p.bound);
+  if (p.bound) put_number(j, "sd_to_bound", p.sd / *p.bound);
   j["q05"] = p.q05;
   j["median"] = p.median;
   j["q95"] = p.q95;
-  put(j, "share_at_zero", p.zero);
+  put_number(j, "share_at_zero", p.zero);
   if (p.coverage) j["coverage"] = coverage_json(*p.coverage);
   return j;
 }
@@ -85,8 +85,8 @@ Json truth_json(const EstimatorStudyConfig& config, const noise::StudyTruth& tru
     Json p = {{"name", truth.model.parameter_name(i)},
               {"unit", config.unit(std::string(truth.model.parameter(i).unit))},
               {"value", value}};
-    put(p, "cramer_rao_sd", bounds[i]);
-    put(p, "cramer_rao_relative_sd", bounds[i] / std::abs(value));
+    put_number(p, "cramer_rao_sd", bounds[i]);
+    put_number(p, "cramer_rao_relative_sd", bounds[i] / std::abs(value));
     j["parameters"].push_back(std::move(p));
   }
   constexpr int kPerDecade = 3;

@@ -26,6 +26,24 @@ CLI::App* subcommand(CLI::App& app, const char* name, const char* help, const ch
   return command;
 }
 
+void add_calibrate(CLI::App& app, std::filesystem::path& input, CommonOptions& common) {
+  auto* calibrate =
+      subcommand(app, "calibrate", "static records -> IMU error model with intervals, and what they cannot tell", "", common);
+  calibrate
+      ->add_option("input", input, "an IMU file at rest (default CSV columns, KF-GINS, IMR), calibration.yaml, or study.yaml")
+      ->required();
+  calibrate->footer(
+      fmt::format("Examples:\n  coast calibrate imu.csv --out imu-model\n  coast calibrate calibration.yaml\n\n"
+                  "calibration.yaml:\n{}\n\nstudy.yaml, the estimators on simulated records of known processes:\n{}",
+                  coast::cli::calibration_example("  "), coast::cli::estimator_study_example("  ")));
+  calibrate->callback([&input, &common] {
+    if (coast::cli::is_estimator_study(input))
+      coast::cli::estimator_study(input, common);
+    else
+      coast::cli::calibrate(input, common);
+  });
+}
+
 int run(int argc, char** argv) {
   CLI::App app{"coast: post-mission INS/GNSS trajectories"};
   app.set_version_flag("--version", COAST_VERSION);
@@ -55,21 +73,7 @@ int run(int argc, char** argv) {
   outage->add_option("study", input, "study.yaml: run and sweep, or scenario and seeds")->required();
   outage->callback([&] { coast::cli::outage(input, common); });
 
-  auto* calibrate =
-      subcommand(app, "calibrate", "static records -> IMU error model with intervals, and what they cannot tell", "", common);
-  calibrate
-      ->add_option("input", input, "an IMU file at rest (default CSV columns, KF-GINS, IMR), calibration.yaml, or study.yaml")
-      ->required();
-  calibrate->footer(
-      fmt::format("Examples:\n  coast calibrate imu.csv --out imu-model\n  coast calibrate calibration.yaml\n\n"
-                  "calibration.yaml:\n{}\n\nstudy.yaml, the estimators on simulated records of known processes:\n{}",
-                  coast::cli::calibration_example("  "), coast::cli::estimator_study_example("  ")));
-  calibrate->callback([&] {
-    if (coast::cli::is_estimator_study(input))
-      coast::cli::estimator_study(input, common);
-    else
-      coast::cli::calibrate(input, common);
-  });
+  add_calibrate(app, input, common);
 
   auto* compare = subcommand(app, "compare", "two trajectories: N, E, D and attitude differences, first minus second",
                              "coast compare results/trajectory.nav truth.nav", common);

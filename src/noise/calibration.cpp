@@ -74,7 +74,7 @@ void bootstrap_intervals(const Likelihood& likelihood, const Fit& fit, const Cal
     for (const auto& u : refits) off.push_back(u[p] - fit.u[p]);
     std::ranges::sort(off);
     const auto quantile = [&](double q) {
-      return off[static_cast<std::size_t>(q * static_cast<double>(off.size() - 1) + 0.5)];
+      return off[static_cast<std::size_t>(std::lround(q * static_cast<double>(off.size() - 1)))];
     };
     // Basic bootstrap: the estimate is to the truth as the refits are to the estimate.
     parameters[p].lower = model.parameter(p).value(fit.u[p] - quantile(0.975));

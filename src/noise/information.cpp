@@ -12,31 +12,28 @@ namespace coast::noise {
 
 namespace {
 
-using Matrix = Eigen::MatrixXd;
-using Vector = Eigen::VectorXd;
-
 /// The block with level and drift as states of a prior so wide that what it adds is below rounding.
 SampleBlock with_mean_states(const SampleBlock& block, Mean mean, double samples) {
   const Eigen::Index n = block.h.size();
   const Eigen::Index m = coefficients(mean);
   SampleBlock wide = SampleBlock::zero(n + m);
-  const auto put = [&](const Matrix& from, Matrix& to) { to.topLeftCorner(n, n) = from; };
+  const auto put = [&](const Eigen::MatrixXd& from, Eigen::MatrixXd& to) { to.topLeftCorner(n, n) = from; };
   put(block.Phi, wide.Phi);
   put(block.Q, wide.Q);
-  put(block.P1, wide.P1);
+  put(block.P_first, wide.P_first);
   wide.h.head(n) = block.h;
   wide.white = block.white;
   if (m == 0) return wide;
-  constexpr double kWide = 1e7;  // times the variance: P1 loses half of its digits, the information one part in 1e7
+  constexpr double kWide = 1e7;  // times the variance: P_first loses half of its digits, the information one part in 1e7
   const double variance =
-      kWide * (block.white + (block.h * block.P1 * block.h.transpose()).value() + samples * block.Q.trace());
+      kWide * (block.white + (block.h * block.P_first * block.h.transpose()).value() + samples * block.Q.trace());
   wide.h(n) = 1.0;
   wide.Phi(n, n) = 1.0;
-  wide.P1(n, n) = variance;
+  wide.P_first(n, n) = variance;
   if (m == 1) return wide;
   wide.Phi(n + 1, n + 1) = 1.0;
   wide.Phi(n, n + 1) = 2.0 / samples;  // over the record the drift adds twice its state
-  wide.P1(n + 1, n + 1) = variance;
+  wide.P_first(n + 1, n + 1) = variance;
   return wide;
 }
 
@@ -45,7 +42,7 @@ SampleBlock widened(const SampleBlock& derivative, Eigen::Index size) {
   const Eigen::Index n = derivative.h.size();
   wide.Phi.topLeftCorner(n, n) = derivative.Phi;
   wide.Q.topLeftCorner(n, n) = derivative.Q;
-  wide.P1.topLeftCorner(n, n) = derivative.P1;
+  wide.P_first.topLeftCorner(n, n) = derivative.P_first;
   wide.white = derivative.white;
   return wide;
 }
@@ -58,35 +55,35 @@ SampleBlock widened(const SampleBlock& derivative, Eigen::Index size) {
 class InformationFilter {
  public:
   InformationFilter(const SampleBlock& block, const std::vector<SampleBlock>& derivatives)
-      : block_(block), slopes_(derivatives), P_(block.P1), A_(Matrix::Zero(block.h.size(), block.h.size())) {
+      : block_(block), slopes_(derivatives), P_(block.P_first), A_(Eigen::MatrixXd::Zero(block.h.size(), block.h.size())) {
     for (const SampleBlock& slope : slopes_) {
-      dP_.push_back(slope.P1);
+      dP_.push_back(slope.P_first);
       B_.push_back(A_);
     }
-    D_.assign(slopes_.size(), std::vector<Matrix>(slopes_.size(), A_));
+    D_.assign(slopes_.size(), std::vector<Eigen::MatrixXd>(slopes_.size(), A_));
     information_.setZero(static_cast<Eigen::Index>(slopes_.size()), static_cast<Eigen::Index>(slopes_.size()));
   }
 
-  Matrix run(std::uint64_t samples) {
+  Eigen::MatrixXd run(std::uint64_t samples) {
     for (std::uint64_t i = 0; i < samples; ++i) step();
     return information_.selfadjointView<Eigen::Lower>();
   }
 
  private:
   void step() {
-    const Vector Ph = P_ * block_.h.transpose();
-    const double S = block_.h.dot(Ph) + block_.white;
-    const Vector k = Ph / S;
-    const Matrix F = block_.Phi - block_.Phi * k * block_.h;
-    const Vector g = block_.Phi * k;
+    const Eigen::VectorXd PHt = P_ * block_.h.transpose();
+    const double S = block_.h.dot(PHt) + block_.white;
+    const Eigen::VectorXd k = PHt / S;
+    const Eigen::MatrixXd F = block_.Phi - block_.Phi * k * block_.h;
+    const Eigen::VectorXd g = block_.Phi * k;
     const std::size_t p = slopes_.size();
     std::vector<double> dS(p);
-    std::vector<Vector> dk(p);
-    std::vector<Vector> drive(p);
+    std::vector<Eigen::VectorXd> dk(p);
+    std::vector<Eigen::VectorXd> drive(p);
     for (std::size_t i = 0; i < p; ++i) {
-      const Vector dPh = dP_[i] * block_.h.transpose();
-      dS[i] = block_.h.dot(dPh) + slopes_[i].white;
-      dk[i] = (dPh - k * dS[i]) / S;
+      const Eigen::VectorXd dPHt = dP_[i] * block_.h.transpose();
+      dS[i] = block_.h.dot(dPHt) + slopes_[i].white;
+      dk[i] = (dPHt - k * dS[i]) / S;
       drive[i] = block_.Phi * dk[i] + slopes_[i].Phi * k;
     }
     for (std::size_t i = 0; i < p; ++i)
@@ -98,12 +95,13 @@ class InformationFilter {
     advance_covariances(k, dk, dS, S);
   }
 
-  void advance_moments(const Matrix& F, const Vector& g, const std::vector<Vector>& drive, double S) {
+  void advance_moments(const Eigen::MatrixXd& F, const Eigen::VectorXd& g, const std::vector<Eigen::VectorXd>& drive,
+                       double S) {
     const std::size_t p = slopes_.size();
     for (std::size_t i = 0; i < p; ++i)
       for (std::size_t j = 0; j <= i; ++j) {
-        const Matrix& M_i = slopes_[i].Phi;
-        const Matrix& M_j = slopes_[j].Phi;
+        const Eigen::MatrixXd& M_i = slopes_[i].Phi;
+        const Eigen::MatrixXd& M_j = slopes_[j].Phi;
         D_[i][j] = F * D_[i][j] * F.transpose() + F * B_[i] * M_j.transpose() + M_i * B_[j].transpose() * F.transpose() +
                    M_i * A_ * M_j.transpose() + S * drive[i] * drive[j].transpose();
       }
@@ -112,12 +110,13 @@ class InformationFilter {
     A_ = block_.Phi * A_ * block_.Phi.transpose() + S * g * g.transpose();
   }
 
-  void advance_covariances(const Vector& k, const std::vector<Vector>& dk, const std::vector<double>& dS, double S) {
-    const Matrix P_upd = P_ - S * k * k.transpose();
+  void advance_covariances(const Eigen::VectorXd& k, const std::vector<Eigen::VectorXd>& dk, const std::vector<double>& dS,
+                           double S) {
+    const Eigen::MatrixXd P_upd = P_ - S * k * k.transpose();
     for (std::size_t i = 0; i < slopes_.size(); ++i) {
-      const Matrix cross = S * dk[i] * k.transpose();
-      const Matrix dP_upd = dP_[i] - dS[i] * k * k.transpose() - cross - cross.transpose();
-      const Matrix moved = slopes_[i].Phi * P_upd * block_.Phi.transpose();
+      const Eigen::MatrixXd cross = S * dk[i] * k.transpose();
+      const Eigen::MatrixXd dP_upd = dP_[i] - dS[i] * k * k.transpose() - cross - cross.transpose();
+      const Eigen::MatrixXd moved = slopes_[i].Phi * P_upd * block_.Phi.transpose();
       dP_[i] = block_.Phi * dP_upd * block_.Phi.transpose() + moved + moved.transpose() + slopes_[i].Q;
     }
     P_ = block_.Phi * P_upd * block_.Phi.transpose() + block_.Q;
@@ -126,16 +125,16 @@ class InformationFilter {
 
   SampleBlock block_;
   std::vector<SampleBlock> slopes_;
-  Matrix P_;
-  std::vector<Matrix> dP_;
-  Matrix A_;
-  std::vector<Matrix> B_;
-  std::vector<std::vector<Matrix>> D_;  ///< j <= i
-  Matrix information_;
+  Eigen::MatrixXd P_;
+  std::vector<Eigen::MatrixXd> dP_;
+  Eigen::MatrixXd A_;
+  std::vector<Eigen::MatrixXd> B_;
+  std::vector<std::vector<Eigen::MatrixXd>> D_;  ///< j <= i
+  Eigen::MatrixXd information_;
 };
 
-Matrix run_filter(const SumModel& model, const std::vector<double>& u, const SampleStep& step, Mean mean,
-                  std::uint64_t values) {
+Eigen::MatrixXd run_filter(const SumModel& model, const std::vector<double>& u, const SampleStep& step, Mean mean,
+                           std::uint64_t values) {
   const SampleBlock wide = with_mean_states(model.block(u, step), mean, static_cast<double>(values));
   std::vector<SampleBlock> derivatives;
   for (const SampleBlock& derivative : model.derivatives(u, step)) derivatives.push_back(widened(derivative, wide.h.size()));
@@ -144,38 +143,39 @@ Matrix run_filter(const SumModel& model, const std::vector<double>& u, const Sam
 
 }  // namespace
 
-Matrix expected_information(const SumModel& model, const std::vector<double>& u, double interval, std::uint64_t samples) {
+Eigen::MatrixXd expected_information(const SumModel& model, const std::vector<double>& u, double interval,
+                                     std::uint64_t samples) {
   constexpr double kMost = 20000.0;
   const auto all = static_cast<double>(samples);
   const std::size_t block = model.has_averages() ? std::max<std::size_t>(1, static_cast<std::size_t>(all / kMost)) : 1;
   const SampleStep step(interval, block);
   const std::uint64_t blocks = samples / block;
-  Matrix information = run_filter(model, u, step, model.mean(), blocks);
+  Eigen::MatrixXd information = run_filter(model, u, step, model.mean(), blocks);
   // Within a block: what its samples tell beside their mean, which stands for itself.
   if (block > 1) information += static_cast<double>(blocks) * run_filter(model, u, SampleStep(interval), Mean::kLevel, block);
   return information;
 }
 
-Matrix record_information(const Likelihood& likelihood, const std::vector<double>& u) {
+Eigen::MatrixXd record_information(const Likelihood& likelihood, const std::vector<double>& u) {
   const auto p = static_cast<Eigen::Index>(u.size());
-  Matrix information = Matrix::Zero(p, p);
+  Eigen::MatrixXd information = Eigen::MatrixXd::Zero(p, p);
   for (const Detrended& record : likelihood.records())
     information += expected_information(likelihood.model(), u, likelihood.interval(), record.signal.length());
   return information;
 }
 
-Matrix cramer_rao(const Matrix& information) {
+Eigen::MatrixXd cramer_rao(const Eigen::MatrixXd& information) {
   const Eigen::Index p = information.rows();
-  const Vector scale = information.diagonal().cwiseMax(0.0).cwiseSqrt();
+  const Eigen::VectorXd scale = information.diagonal().cwiseMax(0.0).cwiseSqrt();
   std::vector<Eigen::Index> seen;
   for (Eigen::Index i = 0; i < p; ++i)
     if (scale(i) > 1e-9) seen.push_back(i);
-  Matrix covariance = Matrix::Zero(p, p);
+  Eigen::MatrixXd covariance = Eigen::MatrixXd::Zero(p, p);
   covariance.diagonal().setConstant(std::numeric_limits<double>::infinity());
   if (seen.empty()) return covariance;
-  const Vector unit = scale(seen).cwiseInverse();
-  const Matrix correlation = unit.asDiagonal() * Matrix(information(seen, seen)) * unit.asDiagonal();
-  const Matrix inverse = correlation.ldlt().solve(Matrix::Identity(correlation.rows(), correlation.rows()));
+  const Eigen::VectorXd unit = scale(seen).cwiseInverse();
+  const Eigen::MatrixXd correlation = unit.asDiagonal() * Eigen::MatrixXd(information(seen, seen)) * unit.asDiagonal();
+  const Eigen::MatrixXd inverse = correlation.ldlt().solve(Eigen::MatrixXd::Identity(correlation.rows(), correlation.rows()));
   covariance(seen, seen) = unit.asDiagonal() * inverse * unit.asDiagonal();
   return covariance;
 }

@@ -16,6 +16,29 @@ void lift_from_zero(const Likelihood& likelihood, const std::vector<Interval>& b
       u[i] = std::clamp(box[i].upper - kSmall, box[i].lower, box[i].upper);
 }
 
+/// A likelihood may have a second top where a process is not there. Where the sum without it is nearly as likely, its top is
+/// looked for too.
+void try_without(const Likelihood& likelihood, const std::vector<Interval>& box, const Eigen::MatrixXd& excess,
+                 double tolerance, Fit& fit) {
+  constexpr double kNear = 3.0;  // of log-likelihood, before the others have moved
+  for (std::size_t i = 0; i < box.size(); ++i) {
+    if (likelihood.model().parameter(i).kind != ParameterInfo::Kind::kVariance || fit.u[i] <= box[i].lower) continue;
+    Fit other;
+    other.u = fit.u;
+    other.u[i] = box[i].lower;
+    ++fit.passes;
+    if (likelihood.value(other.u).log_likelihood < fit.log_likelihood - kNear) continue;
+    polish([&](const std::vector<double>& u) { return likelihood.slope(u); }, likelihood.model(), box, excess,
+           {.tolerance = tolerance}, other);
+    fit.passes += other.passes;
+    if (!(other.log_likelihood > fit.log_likelihood)) continue;
+    fit.u = other.u;
+    fit.log_likelihood = other.log_likelihood;
+    fit.converged = other.converged;
+    fit.trace.push_back(other.log_likelihood);
+  }
+}
+
 }  // namespace
 
 Fit fit_maximum_likelihood(const Likelihood& likelihood, const std::vector<double>& start,
@@ -54,6 +77,7 @@ Fit fit_maximum_likelihood(const Likelihood& likelihood, const std::vector<doubl
   if (options.polished) {
     polish([&](const std::vector<double>& u) { return likelihood.slope(u); }, likelihood.model(), box, excess,
            {.tolerance = options.tolerance}, fit);
+    try_without(likelihood, box, excess, options.tolerance, fit);
   } else {
     fit.log_likelihood = shortened.value(fit.u);
   }

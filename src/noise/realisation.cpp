@@ -28,7 +28,7 @@ std::vector<double> draw(const SampleBlock& block, std::uint64_t length, std::ui
   typename FixedModel<N>::Matrix step = FixedModel<N>::Matrix::Zero();
   typename FixedModel<N>::Matrix first = step;
   step.topLeftCorner(n, n) = square_root(block.Q);
-  first.topLeftCorner(n, n) = square_root(block.P1);
+  first.topLeftCorner(n, n) = square_root(block.P_first);
   std::mt19937_64 generator(seed);
   std::normal_distribution<double> normal;
   typename FixedModel<N>::Vector w = FixedModel<N>::Vector::Zero();

@@ -27,8 +27,8 @@ class SignalBuilder {
 
 }  // namespace
 
-StaticSignal StaticSignal::regular(std::vector<double> values, double interval, std::string source) {
-  StaticSignal signal{std::move(source), interval, std::move(values), {}};
+StaticSignal StaticSignal::regular(std::vector<double> values, double interval, const std::string& source) {
+  StaticSignal signal{source, interval, std::move(values), {}};
   if (!signal.values.empty()) signal.runs.push_back({0, 0, signal.values.size()});
   return signal;
 }

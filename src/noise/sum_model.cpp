@@ -24,7 +24,7 @@ SampleBlock stacked(const std::vector<SampleBlock>& blocks) {
     const Eigen::Index n = block.h.size();
     sum.Phi.block(at, at, n, n) = block.Phi;
     sum.Q.block(at, at, n, n) = block.Q;
-    sum.P1.block(at, at, n, n) = block.P1;
+    sum.P_first.block(at, at, n, n) = block.P_first;
     sum.h.segment(at, n) = block.h;
     sum.white += block.white;
     at += n;

@@ -149,7 +149,7 @@ TEST(EstimatorStudyConfig, ShippedStudiesAndTheExampleAreRead) {
   std::size_t studies = 0;
   for (const auto& entry : fs::directory_iterator(fs::path(COAST_SOURCE_DIR) / "configs" / "studies")) {
     if (!is_estimator_study(entry.path())) continue;
-    EXPECT_GE(read_estimator_study(entry.path()).study.runs, 40U) << entry.path();
+    EXPECT_GE(read_estimator_study(entry.path()).study.runs, 24U) << entry.path();
     ++studies;
   }
   EXPECT_EQ(studies, 4U);

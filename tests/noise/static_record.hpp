@@ -27,7 +27,7 @@ inline std::vector<double> simulate_block(const noise::SampleBlock& block, std::
     for (double& element : w) element = normal(generator);
     return w;
   };
-  const Eigen::MatrixXd first = square_root(block.P1), step = square_root(block.Q);
+  const Eigen::MatrixXd first = square_root(block.P_first), step = square_root(block.Q);
   Eigen::VectorXd x = first * draw();
   std::vector<double> y(n);
   for (double& sample : y) {
@@ -50,7 +50,7 @@ inline DenseModel dense(const noise::SampleBlock& block, const noise::StaticSign
   const auto n = static_cast<Eigen::Index>(signal.length()), s = block.h.size();
   DenseModel model;
   model.states.setZero(n * s, n * s);
-  Eigen::MatrixXd P = block.P1;
+  Eigen::MatrixXd P = block.P_first;
   for (Eigen::Index i = 0; i < n; ++i) {
     Eigen::MatrixXd C = P;  // Cov(x[j], x[i]), j >= i
     for (Eigen::Index j = i; j < n; ++j) {

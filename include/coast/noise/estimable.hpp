@@ -13,11 +13,11 @@
 
 namespace coast::noise {
 
-/// y[k] = h x[k] + v[k],  x[k+1] = Phi x[k] + w[k],  var w = Q, var v = white, var x[1] = P1.
+/// y[k] = h x[k] + v[k],  x[k+1] = Phi x[k] + w[k],  var w = Q, var v = white, var x[1] = P_first.
 struct SampleBlock {
   Eigen::MatrixXd Phi;
   Eigen::MatrixXd Q;
-  Eigen::MatrixXd P1;
+  Eigen::MatrixXd P_first;
   Eigen::RowVectorXd h;
   double white = 0.0;  ///< variance per sample, [signal]^2
 

@@ -24,7 +24,7 @@ struct StaticSignal {
   std::vector<Run> runs;
 
   /// A signal without holes.
-  [[nodiscard]] static StaticSignal regular(std::vector<double> values, double interval, std::string source = {});
+  [[nodiscard]] static StaticSignal regular(std::vector<double> values, double interval, const std::string& source = {});
   /// Length of the grid, samples and holes.
   [[nodiscard]] std::uint64_t length() const { return runs.empty() ? 0 : runs.back().start + runs.back().count; }
   [[nodiscard]] double duration() const { return static_cast<double>(length()) * interval; }

@@ -57,14 +57,14 @@ struct FixedModel {
     const Eigen::Index n = block.h.size();
     Phi.topLeftCorner(n, n) = block.Phi;
     Q.topLeftCorner(n, n) = block.Q;
-    P1.topLeftCorner(n, n) = block.P1;
+    P_first.topLeftCorner(n, n) = block.P_first;
     h.head(n) = block.h;
     sparse = SparseTransition<N>(Phi);
   }
 
   Matrix Phi = Matrix::Zero();
   Matrix Q = Matrix::Zero();
-  Matrix P1 = Matrix::Zero();
+  Matrix P_first = Matrix::Zero();
   Row h = Row::Zero();
   SparseTransition<N> sparse{Matrix::Zero()};  ///< Phi
   double white = 0.0;

@@ -9,7 +9,7 @@ template <int N>
 class Gain {
  public:
   using Model = FixedModel<N>;
-  explicit Gain(const Model& model) : P(model.P1), model_(model) { measure(); }
+  explicit Gain(const Model& model) : P(model.P_first), model_(model) { measure(); }
 
   /// Prediction across one missing sample.
   void skip() {

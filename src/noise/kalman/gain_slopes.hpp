@@ -20,7 +20,7 @@ class GainSlopes {
       : gain(model), model_(model), count_(static_cast<Eigen::Index>(derivatives.size())) {
     for (const SampleBlock& derivative : derivatives) {
       slopes_.emplace_back(derivative);
-      dP_.push_back(slopes_.back().P1);
+      dP_.push_back(slopes_.back().P_first);
       moves_.push_back(!slopes_.back().Phi.isZero(0.0));
     }
     rest_.resize(derivatives.size());
@@ -62,9 +62,9 @@ class GainSlopes {
 
   void measure() {
     for (Eigen::Index i = 0; i < count_; ++i) {
-      const typename Model::Vector dPh = dP_[at(i)] * model_.h.transpose();
-      dS(i) = model_.h.dot(dPh) + slopes_[at(i)].white;
-      dk.col(i) = (dPh - gain.k * dS(i)) / gain.S;
+      const typename Model::Vector dPHt = dP_[at(i)] * model_.h.transpose();
+      dS(i) = model_.h.dot(dPHt) + slopes_[at(i)].white;
+      dk.col(i) = (dPHt - gain.k * dS(i)) / gain.S;
     }
   }
   /// @param right  P_upd Phi'

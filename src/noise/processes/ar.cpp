@@ -202,7 +202,7 @@ class EstimableAr final : public Estimable {
     block.Phi.row(0) = from_partial(partial_of(u)).a.transpose();
     for (Index i = 1; i < order_; ++i) block.Phi(i, i - 1) = 1.0;
     block.Q(0, 0) = std::exp(u[static_cast<std::size_t>(order_)]);
-    block.P1 = lyapunov(block.Phi, block.Q);
+    block.P_first = lyapunov(block.Phi, block.Q);
     block.h(0) = 1.0;
     return block;
   }
@@ -223,8 +223,8 @@ class EstimableAr final : public Estimable {
     for (Index i = 0; i < order_; ++i) {
       SampleBlock by_partial = SampleBlock::zero(order_);
       by_partial.Phi.row(0) = (1.0 - partial(i) * partial(i)) * slope.col(i).transpose();
-      const MatrixXd moved = by_partial.Phi * at.P1 * at.Phi.transpose();
-      by_partial.P1 = lyapunov(at.Phi, moved + moved.transpose());
+      const MatrixXd moved = by_partial.Phi * at.P_first * at.Phi.transpose();
+      by_partial.P_first = lyapunov(at.Phi, moved + moved.transpose());
       all.push_back(by_partial);
     }
     all.push_back(variances_of(at));
@@ -248,7 +248,7 @@ class EstimableAr final : public Estimable {
     const SampleBlock at = block(u, 1.0);
     const VectorXd a = at.Phi.row(0);
     const double squares = m.after(0, 0) - 2.0 * a.dot(m.lagged.row(0)) + a.dot(m.before * a);
-    const Eigen::LLT<MatrixXd> start(at.P1);
+    const Eigen::LLT<MatrixXd> start(at.P_first);
     const double log_start = 2.0 * MatrixXd(start.matrixL()).diagonal().array().log().sum();
     return -0.5 *
            (m.transitions * std::log(at.Q(0, 0)) + squares / at.Q(0, 0) + m.records * log_start + start.solve(m.first).trace());

@@ -53,7 +53,7 @@ SampleBlock block_of(const Numbers& n, const Part& part) {
   SampleBlock block = SampleBlock::zero(2);
   block.Phi << part(n.phi_m), 0.0, part(n.to_mean), 0.0;
   block.Q << part(n.q_state), part(n.q_cross), part(n.q_cross), part(n.q_mean);
-  block.P1 << part(Complex(1.0)), part(n.first_cross), part(n.first_cross), part(n.first_mean);
+  block.P_first << part(Complex(1.0)), part(n.first_cross), part(n.first_cross), part(n.first_mean);
   return block;
 }
 
@@ -75,7 +75,7 @@ SampleBlock averaged_random_walk(std::size_t samples) {
   const double cross = 0.5 * (m + 1.0);
   block.Q << m, cross, cross, (m + 1.0) * (2.0 * m + 1.0) / (6.0 * m);
   const double first = 0.5 * (m - 1.0);  // the first sample is zero
-  block.P1 << m - 1.0, first, first, (m - 1.0) * (2.0 * m - 1.0) / (6.0 * m);
+  block.P_first << m - 1.0, first, first, (m - 1.0) * (2.0 * m - 1.0) / (6.0 * m);
   block.h(1) = 1.0;
   return block;
 }

@@ -101,10 +101,10 @@ class EstimableFlicker final : public Estimable {
     SampleBlock block = SampleBlock::zero(states());
     unit_.transition(step.interval, block.Phi);
     unit_.driving_noise(step.interval, block.Q);
-    unit_.initial_covariance(block.P1);
+    unit_.initial_covariance(block.P_first);
     block.h.setOnes();
     block.Q *= std::exp(u[0]);
-    block.P1 *= std::exp(u[0]);
+    block.P_first *= std::exp(u[0]);
     return block;
   }
   [[nodiscard]] std::vector<SampleBlock> derivatives(std::span<const double> u, const SampleStep& step) const override {
@@ -116,7 +116,7 @@ class EstimableFlicker final : public Estimable {
     double sum = 0.0;
     for (Eigen::Index i = 0; i < states(); ++i) {
       const double phi = unit.Phi(i, i);
-      sum += m.first(i, i) / unit.P1(i, i);
+      sum += m.first(i, i) / unit.P_first(i, i);
       sum += (m.after(i, i) - 2.0 * phi * m.lagged(i, i) + phi * phi * m.before(i, i)) / unit.Q(i, i);
     }
     u[0] = std::log(sum / (static_cast<double>(states()) * (m.records + m.transitions)));

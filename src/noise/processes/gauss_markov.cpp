@@ -127,7 +127,7 @@ double zero_of(const Slope& slope, double low, double high) {
 
 SampleBlock scaled(SampleBlock block, double log_variance) {
   block.Q *= std::exp(log_variance);
-  block.P1 *= std::exp(log_variance);
+  block.P_first *= std::exp(log_variance);
   return block;
 }
 
@@ -151,7 +151,7 @@ class EstimableGaussMarkov final : public Estimable {
     SampleBlock block = SampleBlock::zero(1);
     block.Phi(0, 0) = std::exp(-b);
     block.Q(0, 0) = -sigma2 * std::expm1(-2.0 * b);
-    block.P1(0, 0) = sigma2;
+    block.P_first(0, 0) = sigma2;
     block.h(0) = 1.0;
     return block;
   }

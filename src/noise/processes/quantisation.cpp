@@ -90,7 +90,7 @@ class EstimableQuantisation final : public Estimable {
     SampleBlock block = SampleBlock::zero(2);
     block.Phi(1, 0) = 1.0;
     block.Q(0, 0) = std::exp(u[0]) / (step.duration() * step.duration());
-    block.P1 = block.Q(0, 0) * Eigen::Matrix2d::Identity();
+    block.P_first = block.Q(0, 0) * Eigen::Matrix2d::Identity();
     block.h << 1.0, -1.0;
     return block;
   }

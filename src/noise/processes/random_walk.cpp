@@ -48,7 +48,7 @@ class EstimableRandomWalk final : public Estimable {
     if (step.averaged > 1) {
       SampleBlock means = averaged_random_walk(step.averaged);
       means.Q *= std::exp(u[0]) * step.interval;
-      means.P1 *= std::exp(u[0]) * step.interval;
+      means.P_first *= std::exp(u[0]) * step.interval;
       return means;
     }
     SampleBlock block = SampleBlock::zero(1);
