@@ -120,7 +120,7 @@ accel:
   check(mission.start_state(*solution.filter));
   const geo::GpsTime middle = mission.start().nav.t + 100.0;
   std::optional<estimate::FilterState> at_middle;
-  mission.run_backward(solution.forward.last,
+  mission.run_backward(mission.options(), mission.far_end(solution.forward.last),
                        [&](const estimate::FilterState& state) {
                          if (state.nav.t >= middle) at_middle = state;
                        },
