@@ -8,7 +8,7 @@ namespace coast::noise {
 
 namespace {
 
-constexpr double kRoot95 = 1.959963984540054;  // square root of the 95 % quantile of chi2(1)
+constexpr double kProfileRoot95 = 1.959963984540054;  // square root of the 95 % quantile of chi2(1)
 
 /// The signed root of the likelihood ratio along one parameter, the others maximised over.
 class Profile {
@@ -68,9 +68,9 @@ class RootCurve {
     const double start = slope - bend * distance;
     last_ = distance;
     slope_ = slope;
-    const double square = start * start + 4.0 * bend * kRoot95;
-    const double bent = square >= 0.0 ? 2.0 * kRoot95 / (start + std::sqrt(square)) : -1.0;
-    return bent > 0.0 && std::isfinite(bent) ? bent : kRoot95 / slope;
+    const double square = start * start + 4.0 * bend * kProfileRoot95;
+    const double bent = square >= 0.0 ? 2.0 * kProfileRoot95 / (start + std::sqrt(square)) : -1.0;
+    return bent > 0.0 && std::isfinite(bent) ? bent : kProfileRoot95 / slope;
   }
 
  private:
@@ -88,8 +88,8 @@ std::optional<double> crossing(Profile profile, double guess, double farthest) {
   double distance = std::min(guess, farthest);
   for (int step = 0; step < kSteps; ++step) {
     const double root = profile.root_at(distance);
-    if (std::abs(root - kRoot95) < kClose) return distance;
-    if (root < kRoot95) {
+    if (std::abs(root - kProfileRoot95) < kClose) return distance;
+    if (root < kProfileRoot95) {
       if (distance >= farthest) return {};
       near = distance;
     } else {
@@ -114,7 +114,7 @@ ProfileInterval profile_interval(const Likelihood& likelihood, const Fit& fit, s
   constexpr double kManySamples = 40000.0;
   constexpr double kSharp = 0.05;
   const bool is_long = likelihood.samples() > kManySamples;
-  if (is_long && sd < kSharp) return {fit.u[which] - kRoot95 * sd, fit.u[which] + kRoot95 * sd};
+  if (is_long && sd < kSharp) return {fit.u[which] - kProfileRoot95 * sd, fit.u[which] + kProfileRoot95 * sd};
 
   // What is known badly is slow, and block means hold it.
   constexpr double kEnough = 8000.0;
@@ -126,7 +126,7 @@ ProfileInterval profile_interval(const Likelihood& likelihood, const Fit& fit, s
          {.tolerance = 1e-6}, top);
 
   const Interval range = likelihood.model().ranges(likelihood.scale())[which];
-  const double guess = std::isfinite(sd) ? std::clamp(kRoot95 * sd, 0.01, 2.0) : 1.0;
+  const double guess = std::isfinite(sd) ? std::clamp(kProfileRoot95 * sd, 0.01, 2.0) : 1.0;
   const Eigen::VectorXd tangent = tangent_of(coarse.slope(top.u).information, which);
   ProfileInterval interval;
   if (const auto below = crossing(Profile(coarse, top, which, -1.0, tangent), guess, top.u[which] - range.lower))

@@ -16,13 +16,13 @@ namespace {
 constexpr double kGapFactor = 1.5;  // as the readers have it: a longer step has lost samples
 
 /// Samples of the part, and the mean step between those that follow each other without a gap.
-struct Stretch {
+struct GridStretch {
   std::size_t first = 0;
   std::size_t end = 0;
   double interval = 0.0;
 };
 
-Stretch stretch_of(const record::ImuRecording& imu, const RecordingPart& part) {
+GridStretch stretch_of(const record::ImuRecording& imu, const RecordingPart& part) {
   const auto& samples = imu.samples;
   if (samples.size() < 2) throw InputError({imu.source, 0, fmt::format("{} samples", samples.size()), "at least two", ""});
   const geo::GpsTime start = samples.front().t - samples.front().dt;
@@ -30,7 +30,7 @@ Stretch stretch_of(const record::ImuRecording& imu, const RecordingPart& part) {
     return static_cast<std::size_t>(std::ranges::upper_bound(samples, start + seconds, {}, &record::ImuSample::t) -
                                     samples.begin());
   };
-  Stretch stretch{0, samples.size()};
+  GridStretch stretch{0, samples.size()};
   if (part.from_s) stretch.first = at(*part.from_s);
   if (part.to_s) stretch.end = at(*part.to_s);
   if (stretch.end < stretch.first + 2)
@@ -59,7 +59,7 @@ struct Grid {
   double worst = 0.0;         ///< rounding of a hole to the grid, intervals
 };
 
-Grid grid_of(const record::ImuRecording& imu, const Stretch& stretch) {
+Grid grid_of(const record::ImuRecording& imu, const GridStretch& stretch) {
   Grid grid;
   grid.samples.reserve(stretch.end - stretch.first);
   std::uint64_t at = 0;
@@ -135,7 +135,7 @@ TurnOnBias accel_bias(std::span<const std::array<double, 3>> levels) {
 }  // namespace
 
 StaticRecording static_recording(const record::ImuRecording& imu, const RecordingPart& part) {
-  const Stretch stretch = stretch_of(imu, part);
+  const GridStretch stretch = stretch_of(imu, part);
   const Grid grid = grid_of(imu, stretch);
   StaticRecording recording{imu.source, stretch.interval, {}, {}};
   for (int axis = 0; axis < 6; ++axis) {

@@ -58,7 +58,7 @@ std::string SumModel::parameter_name(std::size_t i) const {
   for (const Term& term : terms_) {
     if (i >= term.parameter + term.parameters) continue;
     const auto same = [&](const Term& other) { return other.process == term.process; };
-    const std::string name = fmt::format("{} {}", term.process->name(), term.process->parameters()[i - term.parameter].name);
+    std::string name = fmt::format("{} {}", term.process->name(), term.process->parameters()[i - term.parameter].name);
     if (std::ranges::count_if(terms_, same) == 1) return name;
     return fmt::format("{} {}", name, 1 + std::ranges::count_if(std::span(terms_.data(), &term), same));
   }

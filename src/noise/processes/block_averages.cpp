@@ -10,7 +10,7 @@ namespace {
 using Complex = std::complex<double>;
 
 /// exp(z) - 1 without cancellation, for the tiny imaginary parts of complex steps.
-Complex expm1(Complex z) {
+Complex exp_minus_one(Complex z) {
   const double half = std::sin(0.5 * z.imag());
   return {std::expm1(z.real()) * std::cos(z.imag()) - 2.0 * half * half, std::exp(z.real()) * std::sin(z.imag())};
 }
@@ -23,12 +23,12 @@ struct Numbers {
 // Sums over j = 1..m of geometric series. Where m b is small their closed forms lose digits like 1/(m b)^2, and the process is
 // a random walk within a block to that order.
 Numbers numbers(Complex b, double m) {
-  const Complex lost = -expm1(-b);        // 1 - phi
-  const Complex lost_m = -expm1(-m * b);  // 1 - phi^m
-  const Complex lost_2m = -expm1(-2.0 * m * b);
+  const Complex lost = -exp_minus_one(-b);        // 1 - phi
+  const Complex lost_m = -exp_minus_one(-m * b);  // 1 - phi^m
+  const Complex lost_2m = -exp_minus_one(-2.0 * m * b);
   const Complex phi = 1.0 - lost;
   const Complex S = lost_m / lost;                  // 1 + phi + ... + phi^(m-1)
-  const Complex q = -expm1(-2.0 * b);               // of one sample
+  const Complex q = -exp_minus_one(-2.0 * b);       // of one sample
   const Complex squares = phi * phi * lost_2m / q;  // phi^2 + phi^4 + ... + phi^2m
   Numbers n;
   n.phi_m = 1.0 - lost_m;
