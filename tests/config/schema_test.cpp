@@ -25,7 +25,8 @@ TEST(Schemas, AreOfOneDraft) {
 }
 
 TEST(Schemas, OwnExamplesAreValid) {
-  for (const char* name : {"calibration", "calibration_run", "estimator_study", "estimator_study_result", "imu_error_model", "run", "scenario", "study", "summary"}) {
+  for (const char* name : {"calibration", "calibration_run", "estimator_study", "estimator_study_result", "imu_error_model",
+                           "run", "scenario", "study", "summary"}) {
     const json examples = test::schema(name).at("examples");
     ASSERT_FALSE(examples.empty()) << name;
     for (const json& example : examples) test::expect_valid(name, example, "example");

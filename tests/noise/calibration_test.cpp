@@ -5,14 +5,12 @@
 #include <numeric>
 
 #include "coast/record/error.hpp"
+#include "noise/static_record.hpp"
 
 namespace coast::noise {
 namespace {
 
-std::vector<double> logs(std::vector<double> values) {
-  for (double& value : values) value = std::log(value);
-  return values;
-}
+using test::logs;
 
 SumModel markov(Mean mean) {
   return {{&estimable("white_noise"), &estimable("gauss_markov")}, mean};

@@ -1,7 +1,9 @@
 #include "coast/noise/estimator_study.hpp"
 
 #include <gtest/gtest.h>
+
 #include <tbb/global_control.h>
+#include "noise/static_record.hpp"
 
 #include <numeric>
 
@@ -11,16 +13,9 @@
 namespace coast::noise {
 namespace {
 
-SumModel sum(const std::vector<const char*>& names, Mean mean) {
-  std::vector<const Estimable*> processes;
-  for (const char* name : names) processes.push_back(&estimable(name));
-  return {processes, mean};
-}
+using test::sum;
 
-std::vector<double> logs(std::vector<double> values) {
-  for (double& value : values) value = std::log(value);
-  return values;
-}
+using test::logs;
 
 /// Four units of white noise, nothing else, nothing known beforehand but its mean of zero.
 EstimatorStudy white_noise_study() {

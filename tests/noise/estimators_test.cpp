@@ -16,10 +16,7 @@ SumModel markov(int count, Mean mean, bool walk = false) {
   return {processes, mean};
 }
 
-std::vector<double> logs(std::vector<double> values) {
-  for (double& value : values) value = std::log(value);
-  return values;
-}
+using test::logs;
 
 // The case of Fig. 1 without its random walk, which cannot be seen: theta = {0.09, 0.008, 0.25}, slope 1e-4.
 StaticSignal figure_1(std::uint64_t seed) {

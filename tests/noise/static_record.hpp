@@ -12,6 +12,18 @@
 
 namespace coast::test {
 
+/// Logarithms: what positive parameters are inside.
+inline std::vector<double> logs(std::vector<double> values) {
+  for (double& value : values) value = std::log(value);
+  return values;
+}
+
+inline noise::SumModel sum(const std::vector<const char*>& names, noise::Mean mean) {
+  std::vector<const noise::Estimable*> processes;
+  for (const char* name : names) processes.push_back(&noise::estimable(name));
+  return {processes, mean};
+}
+
 inline Eigen::MatrixXd square_root(const Eigen::MatrixXd& P) {
   if (P.size() == 0) return P;
   const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(P);

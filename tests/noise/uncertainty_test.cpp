@@ -8,16 +8,9 @@
 namespace coast::noise {
 namespace {
 
-std::vector<double> logs(std::vector<double> values) {
-  for (double& value : values) value = std::log(value);
-  return values;
-}
+using test::logs;
 
-SumModel sum(const std::vector<const char*>& names, Mean mean) {
-  std::vector<const Estimable*> processes;
-  for (const char* name : names) processes.push_back(&estimable(name));
-  return {processes, mean};
-}
+using test::sum;
 
 // I_ij = tr(P V_i P V_j)/2 with P = V^-1 - V^-1 X (X' V^-1 X)^-1 X' V^-1 (Harville 1977), V_i by central differences.
 Eigen::MatrixXd dense_information(const SumModel& model, const std::vector<double>& u, double interval, std::size_t n) {
