@@ -48,7 +48,7 @@ std::string simulated_csv(std::uint64_t seed) {
 }
 
 json calibrated(const fs::path& out) {
-  const json result = json::parse(text_of(out / "calibration.json"));
+  json result = json::parse(text_of(out / "calibration.json"));
   test::expect_valid("calibration", result, out.string());
   test::expect_valid("page", json::parse(text_of(out / "report.json")));
   test::expect_valid("imu_error_model", test::load_yaml_as_json(out / "error_model.yaml"));

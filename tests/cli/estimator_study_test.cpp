@@ -57,7 +57,7 @@ int status_of(const fs::path& study, const fs::path& out, const fs::path& log) {
 }
 
 fs::path written(const test::TemporaryDirectory& folder, const std::string& text) {
-  const fs::path file = folder.path() / "study.yaml";
+  fs::path file = folder.path() / "study.yaml";
   std::ofstream(file, std::ios::binary) << text;
   return file;
 }
