@@ -33,7 +33,8 @@ report::Note outlier_note(const noise::AxisCalibration& r) {
 /// The two ways to the maximum have to agree.
 std::optional<report::Note> search_note(const noise::AxisCalibration& r) {
   constexpr double kMatters = 0.1;
-  const double lead = r.em.log_likelihood - r.best().fit.log_likelihood;
+  if (!r.em) return {};
+  const double lead = r.em->log_likelihood - r.best().fit.log_likelihood;
   if (!(lead > kMatters)) return {};
   return report::Note{report::Note::Kind::kWarning, "The direct search ended below EM",
                       fmt::format("EM came {:.2g} higher in log-likelihood, so the values below are not the maximum.", lead)};

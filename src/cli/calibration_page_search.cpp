@@ -31,7 +31,8 @@ report::Series below(const std::vector<double>& trace, double optimum) {
 
 std::optional<report::Panel> search_panel(const CalibratedAxis& axis) {
   const noise::Fit& direct = axis.result.best().fit;
-  const noise::Fit& em = axis.result.em;
+  if (!axis.result.em) return {};
+  const noise::Fit& em = *axis.result.em;
   const double optimum = std::max(direct.log_likelihood, em.log_likelihood);
   report::Series of_em = below(em.trace, optimum);
   report::Series of_direct = below(direct.trace, optimum);

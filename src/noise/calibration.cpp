@@ -8,6 +8,7 @@
 #include <cmath>
 
 #include "calibration_checks.hpp"
+#include "candidate.hpp"
 #include "coast/noise/chi_square.hpp"
 #include "coast/record/error.hpp"
 #include "model_search.hpp"
@@ -117,12 +118,15 @@ AxisCalibration calibrate(const std::vector<StaticSignal>& given, const Calibrat
 
   Candidate& best = result.candidates[result.chosen];
   const Likelihood likelihood(records, best.model);
-  best.fit = fit_maximum_likelihood(likelihood, best.fit.u);
+  if (!best.on_all_samples) best.fit = fit_maximum_likelihood(likelihood, best.fit.u);
   if (options.progress) options.progress("intervals", 0.0);
+  // Of a large sum EM shows nothing new and takes minutes.
   constexpr int kEmPasses = 20;
-  result.em =
-      fit_em(likelihood, fit_curve(detrended_curve(records.front()), best.model, likelihood.scale(), CurveFit::kWaveletMoments),
-             {.iterations = kEmPasses});
+  constexpr Eigen::Index kEmStates = 6;
+  if (best.model.states() <= kEmStates)
+    result.em = fit_em(likelihood,
+                       fit_curve(detrended_curve(records.front()), best.model, likelihood.scale(), CurveFit::kWaveletMoments),
+                       {.iterations = kEmPasses});
   result.means = likelihood.value(best.fit.u).means;
   const Eigen::MatrixXd information = record_information(likelihood, best.fit.u);
   double duration = 0.0;

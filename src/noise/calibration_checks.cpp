@@ -111,10 +111,12 @@ std::vector<ParameterEstimate> parameters_of(const Likelihood& likelihood, const
                                              const CalibrationOptions& options) {
   const SumModel& model = likelihood.model();
   const double duration = likelihood.scale().duration;
-  std::vector<ParameterEstimate> all(model.parameters());
-  tbb::parallel_for(std::size_t{0}, all.size(), [&](std::size_t i) {
+  const std::vector<ProfileInterval> intervals =
+      options.bootstrap > 0 ? std::vector<ProfileInterval>(model.parameters()) : profile_intervals(likelihood, fit);
+  std::vector<ParameterEstimate> all;
+  for (std::size_t i = 0; i < model.parameters(); ++i) {
     const ParameterInfo info = model.parameter(i);
-    ParameterEstimate& estimate = all[i];
+    ParameterEstimate& estimate = all.emplace_back();
     estimate.name = model.parameter_name(i);
     estimate.unit = info.unit;
     estimate.value = info.value(fit.u[i]);
@@ -122,11 +124,9 @@ std::vector<ParameterEstimate> parameters_of(const Likelihood& likelihood, const
     estimate.relative_bound = std::sqrt(covariance(at, at));
     const double ratio = estimate.relative_bound / kQuarter;
     estimate.duration_for_quarter = duration * ratio * ratio;
-    if (options.bootstrap > 0) return;
-    const ProfileInterval interval = profile_interval(likelihood, fit, i);
-    if (interval.lower) estimate.lower = info.value(*interval.lower);
-    if (interval.upper) estimate.upper = info.value(*interval.upper);
-  });
+    if (intervals[i].lower) estimate.lower = info.value(*intervals[i].lower);
+    if (intervals[i].upper) estimate.upper = info.value(*intervals[i].upper);
+  }
   return all;
 }
 

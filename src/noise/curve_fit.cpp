@@ -89,7 +89,8 @@ NonNegative non_negative_fit(const Eigen::MatrixXd& A, const Eigen::VectorXd& b)
   return best;
 }
 
-/// Rates over a logarithmic grid: ascending where neighbours are of the same process, so that no combination comes twice.
+/// Rates over a logarithmic grid: ascending where neighbours are of the same process, so that no combination comes twice. Of
+/// many rates one after the other is moved over its grid.
 class RateGrid {
  public:
   RateGrid(const SumModel& model, const Roles& roles, const std::vector<Interval>& ranges, const Target& target)
@@ -99,20 +100,38 @@ class RateGrid {
   std::vector<double> best() {
     std::vector<double> u(model_.parameters());
     for (std::size_t i = 0; i < u.size(); ++i) u[i] = ranges_[i].lower;
-    vary(0, 0, u);
+    if (roles_.rates.size() <= kTogether) {
+      vary(0, 0, u);
+      return best_;
+    }
+    for (const std::size_t i : roles_.rates) u[i] = on_grid(i, kPoints / 2);
+    try_variances(u);
+    for (int sweep = 0; sweep < kSweeps; ++sweep)
+      for (const std::size_t i : roles_.rates) {
+        u = best_;
+        for (int k = 0; k < kPoints; ++k) {
+          u[i] = on_grid(i, k);
+          try_variances(u);
+        }
+      }
     return best_;
   }
 
  private:
   static constexpr int kPoints = 14;
+  static constexpr std::size_t kTogether = 4;
+  static constexpr int kSweeps = 3;
 
+  [[nodiscard]] double on_grid(std::size_t i, int k) const {
+    if (model_.parameter(i).kind == ParameterInfo::Kind::kPartial) return -2.0 + 4.0 * k / (kPoints - 1);
+    return ranges_[i].lower + (ranges_[i].upper - ranges_[i].lower) * (k + 0.5) / kPoints;
+  }
   void vary(std::size_t which, int from, std::vector<double>& u) {
     if (which == roles_.rates.size()) return try_variances(u);
     const std::size_t i = roles_.rates[which];
     const bool partial = model_.parameter(i).kind == ParameterInfo::Kind::kPartial;
     for (int k = from; k < kPoints; ++k) {
-      u[i] = partial ? -2.0 + 4.0 * k / (kPoints - 1)
-                     : ranges_[i].lower + (ranges_[i].upper - ranges_[i].lower) * (k + 0.5) / kPoints;
+      u[i] = on_grid(i, k);
       vary(which + 1, partial ? 0 : k + 1, u);
     }
   }

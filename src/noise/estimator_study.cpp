@@ -7,8 +7,8 @@
 #include <chrono>
 #include <random>
 
+#include "candidate.hpp"
 #include "coast/noise/calibration.hpp"
-#include "model_search.hpp"
 
 namespace coast::noise {
 
@@ -126,8 +126,7 @@ StudyFit fit_run(const EstimatorStudy& study, const StudiedEstimator& estimator,
       result.mean_sd.push_back(std::sqrt(at.means.front().covariance(i, i)));
     }
   result.zero = zeros_of(likelihood, fit.u, fit.log_likelihood);
-  if (estimator.intervals)
-    for (std::size_t i = 0; i < fit.u.size(); ++i) result.intervals.push_back(profile_interval(likelihood, fit, i));
+  if (estimator.intervals) result.intervals = profile_intervals(likelihood, fit);
   result.u = std::move(fit.u);
   return result;
 }

@@ -6,7 +6,7 @@
 
 #include "coast/noise/chi_square.hpp"
 #include "coast/noise/uncertainty.hpp"
-#include "short_likelihood.hpp"
+#include "spectrum.hpp"
 
 namespace coast::noise {
 
@@ -133,6 +133,8 @@ class InformationFilter {
   Eigen::MatrixXd information_;
 };
 
+constexpr double kMostValues = 20000.0;  // of a longer record blocks are taken
+
 Eigen::MatrixXd run_filter(const SumModel& model, const std::vector<double>& u, const SampleStep& step, Mean mean,
                            std::uint64_t values) {
   const SampleBlock wide = with_mean_states(model.block(u, step), mean, static_cast<double>(values));
@@ -145,9 +147,8 @@ Eigen::MatrixXd run_filter(const SumModel& model, const std::vector<double>& u, 
 
 Eigen::MatrixXd expected_information(const SumModel& model, const std::vector<double>& u, double interval,
                                      std::uint64_t samples) {
-  constexpr double kMost = 20000.0;
   const auto all = static_cast<double>(samples);
-  const std::size_t block = model.has_averages() ? std::max<std::size_t>(1, static_cast<std::size_t>(all / kMost)) : 1;
+  const std::size_t block = model.has_averages() ? std::max<std::size_t>(1, static_cast<std::size_t>(all / kMostValues)) : 1;
   const SampleStep step(interval, block);
   const std::uint64_t blocks = samples / block;
   Eigen::MatrixXd information = run_filter(model, u, step, model.mean(), blocks);
@@ -161,6 +162,13 @@ Eigen::MatrixXd record_information(const Likelihood& likelihood, const std::vect
   Eigen::MatrixXd information = Eigen::MatrixXd::Zero(p, p);
   for (const Detrended& record : likelihood.records())
     information += expected_information(likelihood.model(), u, likelihood.interval(), record.signal.length());
+  if (likelihood.samples() <= kMostValues) return information;
+  // A resonance that rings longer than a block is in no block: lines of the spectrum hold it.
+  constexpr double kKnown = 4.0;
+  const Eigen::MatrixXd by_lines = spectral_slope(spectrum_of(likelihood.records()), likelihood.model(), u).information;
+  const Eigen::VectorXd lines = by_lines.diagonal();
+  for (Eigen::Index i = 0; i < p; ++i)
+    if (lines(i) > kKnown && lines(i) > 2.0 * information(i, i)) return by_lines;
   return information;
 }
 

@@ -67,7 +67,7 @@ Fit fit_maximum_likelihood(const Likelihood& likelihood, const std::vector<doubl
            {.tolerance = kShortTolerance, .steps = kShortSteps}, fit);
     fit.trace.clear();
     fit.passes = 0;
-    excess = excess_curvature(shortened, fit.u);
+    excess = excess_curvature([&](const std::vector<double>& u) { return shortened.slope(u); }, fit.u);
   } else {
     const SearchResult found = search(likelihood);
     fit.u = found.u;

@@ -1,65 +1,14 @@
 #include "model_search.hpp"
 
 #include <algorithm>
-#include <cmath>
-#include <limits>
 
-#include "coast/record/error.hpp"
-#include "polish.hpp"
+#include "candidate.hpp"
+#include "kalman/fixed_model.hpp"
+#include "refinement.hpp"
 
 namespace coast::noise {
 
 namespace {
-
-/// Processes that the record does not want: without its variance the likelihood is the same, or its rate has gone to where it
-/// is another process.
-std::vector<bool> silent_terms(const ShortLikelihood& likelihood, const std::vector<Interval>& ranges, const SumModel& model,
-                               const std::vector<double>& u) {
-  constexpr double kAtEnd = 1e-6;
-  constexpr double kNothing = 0.02;  // of log-likelihood
-  const double value = likelihood.value(u);
-  std::vector<bool> silent;
-  for (const SumModel::Term& term : model.terms()) {
-    bool says_nothing = false;
-    for (std::size_t i = term.parameter; i < term.parameter + term.parameters; ++i) {
-      const ParameterInfo::Kind kind = model.parameter(i).kind;
-      says_nothing |=
-          kind == ParameterInfo::Kind::kRate && (u[i] < ranges[i].lower + kAtEnd || u[i] > ranges[i].upper - kAtEnd);
-      if (kind != ParameterInfo::Kind::kVariance) continue;
-      std::vector<double> without = u;
-      without[i] = ranges[i].lower;
-      says_nothing |= value - likelihood.value(without) < kNothing;
-    }
-    silent.push_back(says_nothing);
-  }
-  return silent;
-}
-
-void score(const Likelihood& likelihood, Candidate& candidate) {
-  const double n = likelihood.samples();
-  candidate.parameters = static_cast<int>(candidate.model.parameters()) +
-                         coefficients(candidate.model.mean()) * static_cast<int>(likelihood.records().size());
-  const auto k = static_cast<double>(candidate.parameters);
-  candidate.bic = -2.0 * candidate.compared_log_likelihood + k * std::log(n);
-  candidate.aicc = -2.0 * candidate.compared_log_likelihood + 2.0 * k + 2.0 * k * (k + 1.0) / std::max(1.0, n - k - 1.0);
-}
-
-/// Each half scored with what the other was fitted to.
-double held_out_score(const std::vector<StaticSignal>& records, const SumModel& model, const std::vector<double>& u) {
-  double sum = 0.0;
-  double samples = 0.0;
-  for (const StaticSignal& record : records) {
-    const std::uint64_t half = record.length() / 2;
-    const StaticSignal parts[] = {part_of(record, 0, half), part_of(record, half, record.length() - half)};
-    for (const std::size_t fitted : {std::size_t{0}, std::size_t{1}}) {
-      const Fit fit = fit_maximum_likelihood(Likelihood({parts[fitted]}, model), u);
-      const Likelihood other({parts[1 - fitted]}, model);
-      sum += other.value(fit.u).at_mean;
-      samples += other.samples();
-    }
-  }
-  return sum / samples;
-}
 
 std::vector<const Estimable*> named(const std::vector<std::string>& names) {
   std::vector<const Estimable*> processes;
@@ -67,47 +16,9 @@ std::vector<const Estimable*> named(const std::vector<std::string>& names) {
   return processes;
 }
 
-std::vector<const Estimable*> processes_of(const SumModel& model) {
-  std::vector<const Estimable*> processes;
-  for (const SumModel::Term& term : model.terms()) processes.push_back(term.process);
-  return processes;
-}
-
-/// The next larger sums: one more process, a drift, or an autoregression one order higher in the place of white noise.
-std::vector<SumModel> larger(const SumModel& model, const CalibrationOptions& options) {
-  const std::vector<const Estimable*> now = processes_of(model);
-  const auto has = [&](const char* name) { return std::ranges::count(now, &estimable(name)); };
-  std::vector<SumModel> sums;
-  const auto with = [&](const char* name) {
-    std::vector<const Estimable*> processes = now;
-    processes.push_back(&estimable(name));
-    sums.emplace_back(processes, model.mean());
-  };
-  if (has("gauss_markov") < options.most_gauss_markov) with("gauss_markov");
-  if (has("random_walk") == 0) with("random_walk");
-  if (has("quantisation") == 0) with("quantisation");
-  if (model.mean() != Mean::kLevelAndDrift) sums.emplace_back(now, Mean::kLevelAndDrift);
-  const std::vector<const Estimable*> bases = named({"white_noise", "ar(1)", "ar(2)", "ar(3)"});
-  for (std::size_t b = 0; b + 1 < bases.size(); ++b) {
-    if (std::ranges::count(now, bases[b]) == 0) continue;
-    std::vector<const Estimable*> processes = now;
-    std::ranges::replace(processes, bases[b], bases[b + 1]);
-    sums.emplace_back(processes, model.mean());
-  }
-  return sums;
-}
-
-/// The next smaller sums.
-std::vector<SumModel> smaller(const SumModel& model) {
-  const std::vector<const Estimable*> now = processes_of(model);
-  std::vector<SumModel> sums;
-  for (std::size_t i = 0; i < now.size() && now.size() > 1; ++i) {
-    std::vector<const Estimable*> processes = now;
-    processes.erase(processes.begin() + static_cast<std::ptrdiff_t>(i));
-    sums.emplace_back(processes, model.mean());
-  }
-  if (model.mean() == Mean::kLevelAndDrift) sums.emplace_back(now, Mean::kLevel);
-  return sums;
+/// From white noise up: what the base of a sum may be.
+std::vector<const Estimable*> base_ladder() {
+  return named({"white_noise", "ar(1)", "ar(2)", "ar(3)", "ar(4)"});
 }
 
 /// What other sums found for the processes that they share with this one, and the middle of the range for the others.
@@ -134,19 +45,6 @@ std::vector<std::vector<double>> starts_from(const std::vector<Candidate>& other
     starts.push_back(std::move(u));
   }
   return starts;
-}
-
-/// A sum without the processes that say nothing of a fit; nothing where all of them speak.
-std::optional<SumModel> reduced(const std::vector<StaticSignal>& records, const Candidate& candidate) {
-  const SumModel& model = candidate.model;
-  const Likelihood likelihood(records, model);
-  const std::vector<bool> silent =
-      silent_terms(ShortLikelihood(likelihood), model.ranges(likelihood.scale()), model, candidate.fit.u);
-  std::vector<const Estimable*> processes;
-  for (std::size_t t = 0; t < silent.size(); ++t)
-    if (!silent[t]) processes.push_back(model.terms()[t].process);
-  if (processes.empty() || processes.size() == silent.size()) return {};
-  return SumModel(processes, model.mean());
 }
 
 /// Stepwise: the best of the next larger sums as long as one is better, then of the next smaller ones.
@@ -203,53 +101,66 @@ class Search {
 
 }  // namespace
 
-Candidate fit_candidate(const std::vector<StaticSignal>& records, const AllanCurve& curve, const SumModel& model,
-                        const std::vector<std::vector<double>>& starts) {
-  Candidate candidate;
-  candidate.model = model;
-  const Likelihood likelihood(records, model);
-  const ShortLikelihood shortened(likelihood);
-  const SignalScale scale = likelihood.scale();
-  std::vector<double> best = fit_curve(curve, model, scale, CurveFit::kWaveletMoments);
-  double value = shortened.value(best);
-  for (const std::vector<double>& start : starts) {
-    const double there = shortened.value(start);
-    if (!(there > value)) continue;
-    value = there;
-    best = start;
+std::vector<const Estimable*> processes_of(const SumModel& model) {
+  std::vector<const Estimable*> processes;
+  for (const SumModel::Term& term : model.terms()) processes.push_back(term.process);
+  return processes;
+}
+
+const SumModel::Term* base_of(const SumModel& model) {
+  const std::vector<const Estimable*> ladder = base_ladder();
+  for (const SumModel::Term& term : model.terms())
+    if (std::ranges::count(ladder, term.process) > 0) return &term;
+  return nullptr;
+}
+
+std::vector<SumModel> larger(const SumModel& model, const CalibrationOptions& options) {
+  const std::vector<const Estimable*> now = processes_of(model);
+  const auto has = [&](const char* name) { return std::ranges::count(now, &estimable(name)); };
+  std::vector<SumModel> sums;
+  const auto with = [&](const char* name) {
+    std::vector<const Estimable*> processes = now;
+    processes.push_back(&estimable(name));
+    sums.emplace_back(processes, model.mean());
+  };
+  if (has("gauss_markov") < options.most_gauss_markov) with("gauss_markov");
+  if (has("random_walk") == 0) with("random_walk");
+  if (has("quantisation") == 0) with("quantisation");
+  if (model.mean() != Mean::kLevelAndDrift) sums.emplace_back(now, Mean::kLevelAndDrift);
+  const SumModel::Term* base = base_of(model);
+  const std::vector<const Estimable*> ladder = base_ladder();
+  if (base != nullptr && base->process != ladder.back()) {
+    std::vector<const Estimable*> processes = now;
+    *std::ranges::find(processes, base->process) = *(std::ranges::find(ladder, base->process) + 1);
+    sums.emplace_back(processes, model.mean());
   }
-  candidate.fit = fit_maximum_likelihood(likelihood, best, {.polished = shortened.is_whole()});
-  candidate.degenerate = std::ranges::count(silent_terms(shortened, model.ranges(scale), model, candidate.fit.u), true) > 0;
-  candidate.compared_log_likelihood = shortened.at_mean(candidate.fit.u);
-  score(likelihood, candidate);
-  return candidate;
+  std::erase_if(sums, [](const SumModel& sum) { return sum.states() > kMostStates || sum.parameters() > kMostParameters; });
+  return sums;
+}
+
+std::vector<SumModel> smaller(const SumModel& model) {
+  const std::vector<const Estimable*> now = processes_of(model);
+  std::vector<SumModel> sums;
+  for (std::size_t i = 0; i < now.size() && now.size() > 1; ++i) {
+    std::vector<const Estimable*> processes = now;
+    processes.erase(processes.begin() + static_cast<std::ptrdiff_t>(i));
+    sums.emplace_back(processes, model.mean());
+  }
+  if (model.mean() == Mean::kLevelAndDrift) sums.emplace_back(now, Mean::kLevel);
+  return sums;
 }
 
 std::vector<Candidate> fit_candidates(const std::vector<StaticSignal>& records, const AllanCurve& curve,
                                       const CalibrationOptions& options) {
-  if (options.processes.empty()) return Search(records, curve, options).run();
+  if (options.processes.empty()) {
+    std::vector<Candidate> tried = Search(records, curve, options).run();
+    refine(records, options, tried);
+    return tried;
+  }
   std::vector<Candidate> stated{fit_candidate(records, curve, SumModel(named(options.processes), options.mean), {})};
   if (options.held_out || options.criterion == Criterion::kHeldOut)
     stated.front().held_out = held_out_score(records, stated.front().model, stated.front().fit.u);
   return stated;
-}
-
-bool better(const Candidate& a, const Candidate& b, Criterion criterion) {
-  const auto cost = [&](const Candidate& c) {
-    if (!std::isfinite(c.compared_log_likelihood)) return std::numeric_limits<double>::infinity();
-    if (criterion == Criterion::kHeldOut) return c.held_out ? -*c.held_out : std::numeric_limits<double>::infinity();
-    return criterion == Criterion::kBic ? c.bic : c.aicc;
-  };
-  return a.degenerate != b.degenerate ? b.degenerate : cost(a) < cost(b);
-}
-
-std::size_t choose(const std::vector<Candidate>& candidates, Criterion criterion) {
-  std::size_t best = 0;
-  for (std::size_t i = 1; i < candidates.size(); ++i)
-    if (better(candidates[i], candidates[best], criterion)) best = i;
-  if (!std::isfinite(candidates[best].compared_log_likelihood))
-    throw NumericalError("no sum of processes has a finite likelihood", "", "is the signal constant?");
-  return best;
 }
 
 }  // namespace coast::noise

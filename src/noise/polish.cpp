@@ -123,7 +123,7 @@ void polish(const SlopeFunction& likelihood, const SumModel& model, const std::v
   Polish(likelihood, model, box, excess, fit).run(options.tolerance, options.steps);
 }
 
-Eigen::MatrixXd excess_curvature(const ShortLikelihood& likelihood, const std::vector<double>& u) {
+Eigen::MatrixXd excess_curvature(const SlopeFunction& likelihood, const std::vector<double>& u) {
   constexpr double kStep = 1e-3;
   const auto p = static_cast<Eigen::Index>(u.size());
   Eigen::MatrixXd hessian(p, p);
@@ -131,12 +131,12 @@ Eigen::MatrixXd excess_curvature(const ShortLikelihood& likelihood, const std::v
   for (Eigen::Index i = 0; i < p; ++i) {
     const auto at = static_cast<std::size_t>(i);
     moved[at] = u[at] + kStep;
-    const Eigen::VectorXd above = likelihood.slope(moved).gradient;
+    const Eigen::VectorXd above = likelihood(moved).gradient;
     moved[at] = u[at] - kStep;
-    hessian.col(i) = (above - likelihood.slope(moved).gradient) / (2.0 * kStep);
+    hessian.col(i) = (above - likelihood(moved).gradient) / (2.0 * kStep);
     moved[at] = u[at];
   }
-  return -0.5 * (hessian + hessian.transpose()) - likelihood.slope(u).information;
+  return -0.5 * (hessian + hessian.transpose()) - likelihood(u).information;
 }
 
 }  // namespace coast::noise

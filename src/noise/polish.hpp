@@ -23,6 +23,6 @@ void polish(const SlopeFunction& likelihood, const SumModel& model, const std::v
             const Eigen::MatrixXd& excess, const PolishOptions& options, Fit& fit);
 
 /// Minus the Hessian of the log-likelihood by central differences of its gradient, less the information.
-[[nodiscard]] Eigen::MatrixXd excess_curvature(const ShortLikelihood& likelihood, const std::vector<double>& u);
+[[nodiscard]] Eigen::MatrixXd excess_curvature(const SlopeFunction& likelihood, const std::vector<double>& u);
 
 }  // namespace coast::noise

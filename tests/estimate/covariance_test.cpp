@@ -16,7 +16,7 @@ namespace {
 
 using namespace estimate;
 
-constexpr double kStart = 12.0;  // s into the motion
+constexpr double kMoving = 12.0;  // s into the motion
 
 class Covariance : public testing::Test {
  protected:
@@ -49,7 +49,7 @@ class Covariance : public testing::Test {
     const double dt = 1e-3;
     const Eigen::Vector3d w(0.0, 0.0, geo::kEarthRate);
     for (int k = 0; k < std::lround(seconds / dt); ++k) {
-      const simulate::Kinematics body = recording_.motion->at(kStart + (k + 0.5) * dt);
+      const simulate::Kinematics body = recording_.motion->at(kMoving + (k + 0.5) * dt);
       const Eigen::Vector3d omega = simulate::omega_ib_b(body), f = simulate::f_ib_b(body);
       geo::LocalGravity gravity;
       (void)gravity.at(body.r_eb_e);
@@ -77,9 +77,9 @@ class Covariance : public testing::Test {
 
   [[nodiscard]] Eigen::MatrixXd composed(Eigen::MatrixXd P, double seconds, double knot_interval) const {
     Navigator navigator(*layout_, ins::IncrementKind::kRaw, geo::kEarthRate);
-    navigator.set({recording_.truth(test::mission_start() + kStart), Eigen::VectorXd::Zero(layout_->size()), {}});
+    navigator.set({recording_.truth(test::mission_start() + kMoving), Eigen::VectorXd::Zero(layout_->size()), {}});
     TransitionAccumulator transition(*layout_, geo::kEarthRate);
-    const auto first = static_cast<std::size_t>(std::lround(kStart * 100.0));
+    const auto first = static_cast<std::size_t>(std::lround(kMoving * 100.0));
     double since_knot = 0.0;
     for (std::size_t i = first; i < first + static_cast<std::size_t>(std::lround(seconds * 100.0)); ++i) {
       const record::ImuSample& s = recording_.imu.samples[i];

@@ -38,7 +38,8 @@ TEST(Calibration, FindsTheSumTheValuesAndTheLevelOfASimulatedRecord) {
   EXPECT_TRUE(result.outliers.empty());
   EXPECT_GT(result.whiteness.p_value, 1e-3);
   EXPECT_NEAR(result.means[0].value(1), 4e-4, 4.0 * std::sqrt(result.means[0].covariance(1, 1)));
-  EXPECT_LE(result.em.log_likelihood, result.best().fit.log_likelihood + 1e-6);
+  ASSERT_TRUE(result.em);
+  EXPECT_LE(result.em->log_likelihood, result.best().fit.log_likelihood + 1e-6);
   for (const Candidate& candidate : result.candidates) EXPECT_TRUE(std::isfinite(candidate.bic)) << candidate.model.name();
 }
 

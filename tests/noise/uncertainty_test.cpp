@@ -101,7 +101,7 @@ TEST(ProfileInterval, OfAVarianceAloneIsThatOfItsLikelihoodRatio) {
   const StaticSignal record = StaticSignal::regular(test::simulate_block(model.block(logs({4.0}), 1.0), 150, 3), 1.0);
   const Likelihood likelihood({record}, model);
   const Fit fit = fit_maximum_likelihood(likelihood, logs({1.0}));
-  const ProfileInterval interval = profile_interval(likelihood, fit, 0);
+  const ProfileInterval interval = profile_intervals(likelihood, fit)[0];
   ASSERT_TRUE(interval.lower && interval.upper);
   // 2 (max - l) = n (exp(-d) + d - 1) for d = u - u_max; its root is met to 0.01 in the root of 1.96.
   for (const double u : {*interval.lower, *interval.upper}) {
@@ -116,7 +116,7 @@ TEST(ProfileInterval, IsOpenWhereTheRecordSaysNothing) {
       StaticSignal::regular(test::simulate_block(model.block(logs({0.09, 0.008, 0.25, 1e-10}), 1.0), 3000, 12), 1.0);
   const Likelihood likelihood({record}, model);
   const Fit fit = fit_maximum_likelihood(likelihood, logs({0.09, 0.01, 0.2, 1e-6}));
-  const ProfileInterval walk = profile_interval(likelihood, fit, 3);
+  const ProfileInterval walk = profile_intervals(likelihood, fit)[3];
   EXPECT_FALSE(walk.lower.has_value());  // the walk may be zero
   ASSERT_TRUE(walk.upper.has_value());
   EXPECT_GT(*walk.upper, std::log(1e-10));

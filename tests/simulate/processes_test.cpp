@@ -9,10 +9,10 @@
 #include <string>
 #include <vector>
 
-#include "coast/io/yaml.hpp"
 #include "coast/noise/allan.hpp"
 #include "coast/noise/chi_square.hpp"
 #include "coast/simulate/sensor_errors.hpp"
+#include "sensor.hpp"
 #include "support/support.hpp"
 
 namespace coast::simulate {
@@ -20,23 +20,8 @@ namespace {
 
 using Eigen::Vector3d;
 
-noise::ImuErrorModel model(const std::string& gyro, const std::string& accel = "") {
-  return noise::ImuErrorModel::from(io::parse_yaml(
-      fmt::format("schema: coast.imu_error_model/1\nrate_hz: 100\ngyro: {{all: [{}]}}\naccel: {{all: [{}]}}\n", gyro, accel),
-      "model.yaml"));
-}
-
 noise::ProcessPtr process(const std::string& gyro) {
-  return model(gyro).axes(noise::Sensor::kGyro)[0].front();
-}
-
-record::ImuRecording at_rest(std::size_t count, double dt, const Vector3d& rate) {
-  record::ImuRecording truth;
-  truth.rate_hz = 1.0 / dt;
-  truth.samples.resize(count);
-  for (std::size_t k = 0; k < count; ++k)
-    truth.samples[k] = {geo::GpsTime{} + dt * static_cast<double>(k + 1), dt, dt * rate, Vector3d::Zero()};
-  return truth;
+  return error_model(gyro).axes(noise::Sensor::kGyro)[0].front();
 }
 
 /// The power law that the model's own curve follows about tau, by its slope over two octaves.
@@ -131,9 +116,10 @@ constexpr const char* kWhite = "{process: white_noise, density: 1e-3, unit: rad/
 // moves it by ten steps a sample, so the errors at different times are independent and the curve is that of IEEE 952.
 TEST(Simulated, RoundedIntegralNeverLosesTheResidue) {
   const double dt = 0.01, step = 1e-5;
-  const record::ImuRecording truth = at_rest(1000000, dt, {1e-3, 0.0, -0.02});
-  const auto rounded_model = model(fmt::format("{}, {{process: quantisation, step: {}, unit: rad}}", kWhite, step));
-  const record::ImuRecording smooth = with_errors(truth, model(kWhite), 9), rounded = with_errors(truth, rounded_model, 9);
+  const record::ImuRecording truth = constant_truth(1000000, dt, {1e-3, 0.0, -0.02}, Vector3d::Zero());
+  const auto rounded_model = error_model(fmt::format("{}, {{process: quantisation, step: {}, unit: rad}}", kWhite, step));
+  const record::ImuRecording smooth = with_errors(truth, error_model(kWhite), 9),
+                             rounded = with_errors(truth, rounded_model, 9);
   for (Eigen::Index axis = 0; axis < 3; ++axis) {
     noise::AllanAccumulator accumulator(dt);
     double error = 0.0, largest = 0.0, off_grid = 0.0;
@@ -154,9 +140,10 @@ TEST(Simulated, RoundedIntegralNeverLosesTheResidue) {
 // Each sample by itself: white noise of step^2/12, here beside a signal that the noise spreads over two steps and more.
 TEST(Simulated, RoundedSamplesCarryWhiteNoise) {
   const double dt = 0.01, step = 5e-3;
-  const record::ImuRecording truth = at_rest(300000, dt, {0.0, 0.0123, 0.0});
-  const auto rounded_model = model(fmt::format("{}, {{process: quantisation, step: {}, unit: rad/s}}", kWhite, step));
-  const record::ImuRecording smooth = with_errors(truth, model(kWhite), 4), rounded = with_errors(truth, rounded_model, 4);
+  const record::ImuRecording truth = constant_truth(300000, dt, {0.0, 0.0123, 0.0}, Vector3d::Zero());
+  const auto rounded_model = error_model(fmt::format("{}, {{process: quantisation, step: {}, unit: rad/s}}", kWhite, step));
+  const record::ImuRecording smooth = with_errors(truth, error_model(kWhite), 4),
+                             rounded = with_errors(truth, rounded_model, 4);
   noise::AllanAccumulator accumulator(dt);
   for (std::size_t k = 0; k < truth.samples.size(); ++k) {
     const double value = rounded.samples[k].dtheta.y() / dt, difference = value - smooth.samples[k].dtheta.y() / dt;

@@ -8,27 +8,13 @@
 #include <string>
 #include <vector>
 
-#include "coast/io/yaml.hpp"
+#include "sensor.hpp"
 #include "support/support.hpp"
 
 namespace coast::simulate {
 namespace {
 
 using Eigen::Vector3d;
-
-noise::ImuErrorModel model(const std::string& gyro, const std::string& accel) {
-  return noise::ImuErrorModel::from(io::parse_yaml(
-      fmt::format("schema: coast.imu_error_model/1\ngyro: {{all: [{}]}}\naccel: {{all: [{}]}}\n", gyro, accel), "model.yaml"));
-}
-
-record::ImuRecording constant_truth(std::size_t count, double dt, const Vector3d& rate, const Vector3d& force) {
-  record::ImuRecording truth;
-  truth.rate_hz = 1.0 / dt;
-  truth.samples.resize(count);
-  for (std::size_t k = 0; k < count; ++k)
-    truth.samples[k] = {geo::GpsTime{} + dt * static_cast<double>(k + 1), dt, dt * rate, dt * force};
-  return truth;
-}
 
 std::vector<double> gyro_x_errors(const noise::ImuErrorModel& m, std::size_t count, double dt, std::uint64_t seed) {
   const record::ImuRecording measured = with_errors(constant_truth(count, dt, Vector3d::Zero(), Vector3d::Zero()), m, seed);
@@ -44,7 +30,7 @@ double autocovariance(const std::vector<double>& x, std::size_t lag) {
 }
 
 TEST(WithErrors, WhiteNoiseHasItsVarianceAtAnyRateAndNoMemory) {
-  const noise::ImuErrorModel m = model("{process: white_noise, density: 0.01, unit: rad/s/sqrt(Hz)}", "");
+  const noise::ImuErrorModel m = error_model("{process: white_noise, density: 0.01, unit: rad/s/sqrt(Hz)}");
   for (double dt : {0.005, 0.1}) {
     const std::vector<double> errors = gyro_x_errors(m, 40000, dt, 7);
     const double variance = 1e-4 / dt;
@@ -62,7 +48,7 @@ TEST(WithErrors, GaussMarkovHasItsAutocovariance) {
   const double T = 5.0;
   const double dt = 0.05;
   const noise::ImuErrorModel m =
-      model(fmt::format("{{process: gauss_markov, sigma: {}, unit: rad/s, correlation_time_s: {}}}", sigma, T), "");
+      error_model(fmt::format("{{process: gauss_markov, sigma: {}, unit: rad/s, correlation_time_s: {}}}", sigma, T));
   const std::vector<double> errors = gyro_x_errors(m, 2000000, dt, 3);
   const double tolerance = 4.0 * sigma * sigma * std::sqrt(4.0 * T / (2e6 * dt));
   ASSERT_LT(tolerance, 0.06 * sigma * sigma);
@@ -72,7 +58,7 @@ TEST(WithErrors, GaussMarkovHasItsAutocovariance) {
 
 // A walk's variance is q t; over many seeds, at one time.
 TEST(WithErrors, RandomWalkGrowsWithTheRootOfTime) {
-  const noise::ImuErrorModel m = model("{process: random_walk, density: 0.003, unit: rad/s/sqrt(s)}", "");
+  const noise::ImuErrorModel m = error_model("{process: random_walk, density: 0.003, unit: rad/s/sqrt(s)}");
   double sum = 0.0;
   const int runs = 400;
   for (int seed = 0; seed < runs; ++seed) {
@@ -86,7 +72,7 @@ TEST(WithErrors, RandomWalkGrowsWithTheRootOfTime) {
 }
 
 TEST(WithErrors, RandomConstantIsDrawnOncePerRunAndAxis) {
-  const noise::ImuErrorModel m = model("{process: random_constant, sigma: 0.5, unit: rad/s}", "");
+  const noise::ImuErrorModel m = error_model("{process: random_constant, sigma: 0.5, unit: rad/s}");
   double sum = 0.0;
   const int runs = 2000;
   for (int seed = 0; seed < runs; ++seed) {
@@ -101,7 +87,7 @@ TEST(WithErrors, RandomConstantIsDrawnOncePerRunAndAxis) {
 
 TEST(WithErrors, ScaleFactorMultipliesItsOwnAxis) {
   const Vector3d force(3.0, 0.0, -9.8);
-  const noise::ImuErrorModel m = model("", "{process: scale_factor, sigma: 1000, unit: ppm}");
+  const noise::ImuErrorModel m = error_model("", "{process: scale_factor, sigma: 1000, unit: ppm}");
   const record::ImuRecording measured = with_errors(constant_truth(5, 0.01, Vector3d::Zero(), force), m, 11);
   const Vector3d error = measured.samples[4].dv / 0.01 - force;
   EXPECT_EQ(error.y(), 0.0);
@@ -114,7 +100,7 @@ TEST(WithErrors, ScaleFactorMultipliesItsOwnAxis) {
 // error_i = m_ij truth_j: a rate about x alone shows in y and z, never in x.
 TEST(WithErrors, MisalignmentLeaksTheOtherAxes) {
   const Vector3d rate(0.5, 0.0, 0.0);
-  const noise::ImuErrorModel m = model("{process: misalignment, sigma: 1, unit: mrad}", "");
+  const noise::ImuErrorModel m = error_model("{process: misalignment, sigma: 1, unit: mrad}");
   double sum = 0.0;
   const int runs = 500;
   for (int seed = 0; seed < runs; ++seed) {
@@ -132,17 +118,17 @@ TEST(WithErrors, MisalignmentLeaksTheOtherAxes) {
 TEST(WithErrors, StreamsAreRepeatableAndIndependent) {
   const std::string walk = "{process: random_walk, density: 0.003, unit: rad/s/sqrt(s)}";
   const std::string white = "{process: white_noise, density: 0.01, unit: rad/s/sqrt(Hz)}";
-  const std::vector<double> alone = gyro_x_errors(model(walk, ""), 50, 0.1, 5);
-  EXPECT_EQ(alone, gyro_x_errors(model(walk, ""), 50, 0.1, 5));
-  EXPECT_NE(alone, gyro_x_errors(model(walk, ""), 50, 0.1, 6));
+  const std::vector<double> alone = gyro_x_errors(error_model(walk), 50, 0.1, 5);
+  EXPECT_EQ(alone, gyro_x_errors(error_model(walk), 50, 0.1, 5));
+  EXPECT_NE(alone, gyro_x_errors(error_model(walk), 50, 0.1, 6));
   // A process added behind it, or to the other sensor, changes nothing of the first.
   const std::vector<double> both =
-      gyro_x_errors(model(walk + ", " + white, "{process: white_noise, density: 1, unit: ug/sqrt(Hz)}"), 50, 0.1, 5);
+      gyro_x_errors(error_model(walk + ", " + white, "{process: white_noise, density: 1, unit: ug/sqrt(Hz)}"), 50, 0.1, 5);
   const std::vector<double> second =
-      gyro_x_errors(model("{process: random_constant, sigma: 0, unit: rad/s}, " + white, ""), 50, 0.1, 5);
+      gyro_x_errors(error_model("{process: random_constant, sigma: 0, unit: rad/s}, " + white), 50, 0.1, 5);
   for (std::size_t k = 0; k < 50; ++k) EXPECT_NEAR(both[k], alone[k] + second[k], 1e-15);
   const record::ImuRecording measured =
-      with_errors(constant_truth(20, 0.1, Vector3d::Zero(), Vector3d::Zero()), model(white, ""), 5);
+      with_errors(constant_truth(20, 0.1, Vector3d::Zero(), Vector3d::Zero()), error_model(white), 5);
   EXPECT_NE(measured.samples[3].dtheta.x(), measured.samples[3].dtheta.y());
 }
 

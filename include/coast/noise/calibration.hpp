@@ -14,8 +14,8 @@ enum class Criterion { kBic, kAicc, kHeldOut };
 struct CalibrationOptions {
   Sensor sensor = Sensor::kGyro;
   /// Names of the registry; empty: searched stepwise, from white noise and a level, over sums with up to `most_gauss_markov`
-  /// Gauss-Markov processes, random walk, quantisation, drift, and an autoregression in the place of white noise (the sensor's
-  /// own filter).
+  /// Gauss-Markov processes, random walk, quantisation, drift, an autoregression in the place of white noise (the sensor's own
+  /// filter), and further AR(2) where the innovations have power in a narrow band (vibration of what the sensor stands on).
   std::vector<std::string> processes = {};
   Mean mean = Mean::kLevelAndDrift;  ///< with `processes`
   int most_gauss_markov = 3;
@@ -33,13 +33,14 @@ struct Candidate {
   SumModel model;
   Fit fit;  ///< of the chosen one to all samples
   /// What the criteria compare: log-likelihood maximised over level and drift (that of `fit` is restricted, and sums that
-  /// differ in their mean cannot be compared by it), of a record beyond 40 000 samples on 4000 block means and its first 8000
-  /// samples.
+  /// differ in their mean cannot be compared by it). Of a record beyond 40 000 samples it is on 4000 block means and the first
+  /// 8000 samples unless the sum got as far as `on_all_samples`.
   double compared_log_likelihood = 0.0;
   int parameters = 0;  ///< of the processes and of the means
   double bic = 0.0;
   double aicc = 0.0;
   std::optional<double> held_out;  ///< log-likelihood per sample on halves that were not fitted
+  bool on_all_samples = false;     ///< what is compared; false: on extracts
   bool degenerate = false;         ///< a variance went to zero: the sum without that process says the same
 };
 
@@ -87,7 +88,7 @@ struct AxisCalibration {
   AllanReading reading;            ///< of the first
   std::vector<Candidate> candidates;
   std::size_t chosen = 0;
-  Fit em;                           ///< the first passes of EM towards the chosen sum, for comparison
+  std::optional<Fit> em;            ///< the first passes of EM towards the chosen sum, for comparison; of up to 6 states
   std::vector<MeanEstimate> means;  ///< of each record
   std::vector<ParameterEstimate> parameters;
   std::vector<Combination> combinations;  ///< from the best known to the least

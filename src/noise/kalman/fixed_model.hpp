@@ -24,6 +24,17 @@ class SparseTransition {
         if (Phi(r, c) != 0.0) elements_[static_cast<std::size_t>(count_++)] = {r, c, Phi(r, c)};
   }
   [[nodiscard]] bool empty() const { return count_ == 0; }
+  /// Phi M
+  template <class Columns>
+  [[nodiscard]] Columns left(const Columns& M) const {
+    Columns product = Columns::Zero(M.rows(), M.cols());
+    for (Eigen::Index c = 0; c < M.cols(); ++c)
+      for (int k = 0; k < count_; ++k) {
+        const Element& e = elements_[static_cast<std::size_t>(k)];
+        product(e.row, c) += e.value * M(e.col, c);
+      }
+    return product;
+  }
   /// M Phi'
   [[nodiscard]] Matrix right(const Matrix& M) const {
     Matrix product = Matrix::Zero();
@@ -71,7 +82,7 @@ struct FixedModel {
 };
 
 inline constexpr int kMostStates = 12;
-inline constexpr int kMostParameters = 16;
+inline constexpr int kMostParameters = 20;
 
 /// Calls `pass` with the smallest size that has room for `states`.
 template <class Pass>

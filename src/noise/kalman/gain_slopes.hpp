@@ -1,100 +1,63 @@
 #pragma once
 // The covariance side of the filter with its derivatives, step by step until both rest. Private to the room.
 
+#include <optional>
 #include <vector>
 
-#include "gain.hpp"
+#include "gain_increments.hpp"
+#include "riccati_slopes.hpp"
 
 namespace coast::noise {
 
-/// dS = h dP h' + dr,  dk = (dP h' - k dS)/S,  dP' = Phi dP_upd Phi' + dPhi P_upd Phi' + Phi P_upd dPhi' + dQ
+/// By increments of low rank up to the first hole, where the start allows; by the Riccati recursion otherwise.
 template <int N>
 class GainSlopes {
  public:
   using Model = FixedModel<N>;
-  using Matrix = typename Model::Matrix;
+  using Vector = typename Model::Vector;
   using Slopes = Eigen::Matrix<double, N, Eigen::Dynamic, 0, N, kMostParameters>;
 
   /// @param model  outlives this
   GainSlopes(const Model& model, const std::vector<SampleBlock>& derivatives)
-      : gain(model), model_(model), count_(static_cast<Eigen::Index>(derivatives.size())) {
-    for (const SampleBlock& derivative : derivatives) {
-      slopes_.emplace_back(derivative);
-      dP_.push_back(slopes_.back().P_first);
-      moves_.push_back(!slopes_.back().Phi.isZero(0.0));
-    }
-    rest_.resize(derivatives.size());
-    dk.setZero(N, count_);
-    dS.setZero(count_);
-    measure();
+      : model_(model), slopes_(derivatives.begin(), derivatives.end()) {
+    if (GainIncrements<N>::apply_to(model))
+      increments_.emplace(model, slopes_);
+    else
+      riccati_.emplace(model, slopes_);
   }
+  GainSlopes(const GainSlopes&) = delete;
+  GainSlopes& operator=(const GainSlopes&) = delete;
+  GainSlopes(GainSlopes&&) = delete;
+  GainSlopes& operator=(GainSlopes&&) = delete;
+  ~GainSlopes() = default;
 
-  [[nodiscard]] Eigen::Index count() const { return count_; }
-  [[nodiscard]] bool moves(Eigen::Index i) const { return moves_[at(i)]; }  ///< the derivative has a part in Phi
-  [[nodiscard]] const Matrix& dPhi(Eigen::Index i) const { return slopes_[at(i)].Phi; }
-  [[nodiscard]] bool steady() const { return steady_; }
+  [[nodiscard]] Eigen::Index count() const { return static_cast<Eigen::Index>(slopes_.size()); }
+  [[nodiscard]] const SparseTransition<N>& dPhi(Eigen::Index i) const { return slopes_[static_cast<std::size_t>(i)].sparse; }
+  [[nodiscard]] double S() const { return riccati_ ? riccati_->gain.S : increments_->S; }
+  [[nodiscard]] const Vector& k() const { return riccati_ ? riccati_->gain.k : increments_->k; }
+  [[nodiscard]] const Slopes& dk() const { return riccati_ ? riccati_->dk : increments_->dk; }
+  [[nodiscard]] const Eigen::VectorXd& dS() const { return riccati_ ? riccati_->dS : increments_->dS; }
+  [[nodiscard]] bool steady() const { return riccati_ ? riccati_->steady() : increments_->steady(); }
 
-  void skip() {
-    const Matrix right = model_.sparse.right(gain.P);
-    for (Eigen::Index i = 0; i < count_; ++i) predict(i, right, Matrix(dP_[at(i)]));
-    gain.skip();
-    measure();
-    steady_ = false;
-  }
   void step() {
-    const double S = gain.S;
-    const Matrix right = model_.sparse.right(gain.P - S * gain.k * gain.k.transpose());
-    for (Eigen::Index i = 0; i < count_; ++i) {
-      const Matrix cross = dk.col(i) * gain.k.transpose();
-      predict(i, right, dP_[at(i)] - dS(i) * gain.k * gain.k.transpose() - S * (cross + cross.transpose()));
-    }
-    gain.step();
-    measure();
-    look();
+    ++steps_;
+    riccati_ ? riccati_->step() : increments_->step();
   }
-
-  Gain<N> gain;
-  Slopes dk;  ///< one column per parameter
-  Eigen::VectorXd dS;
+  /// A hole needs P itself, which the increments do not keep.
+  void skip() {
+    if (!riccati_) {
+      riccati_.emplace(model_, slopes_);
+      for (std::uint64_t i = 0; i < steps_ && !riccati_->steady(); ++i) riccati_->step();
+    }
+    riccati_->skip();
+  }
 
  private:
-  static std::size_t at(Eigen::Index i) { return static_cast<std::size_t>(i); }
-
-  void measure() {
-    for (Eigen::Index i = 0; i < count_; ++i) {
-      const typename Model::Vector dPHt = dP_[at(i)] * model_.h.transpose();
-      dS(i) = model_.h.dot(dPHt) + slopes_[at(i)].white;
-      dk.col(i) = (dPHt - gain.k * dS(i)) / gain.S;
-    }
-  }
-  /// @param right  P_upd Phi'
-  void predict(Eigen::Index i, const Matrix& right, const Matrix& dP_upd) {
-    const Model& slope = slopes_[at(i)];
-    Matrix next = model_.sparse.congruence(dP_upd);
-    // dPhi P_upd Phi' = ((P_upd Phi')' dPhi')'
-    if (moves_[at(i)]) next += 2.0 * slope.sparse.right(right.transpose());
-    dP_[at(i)] = 0.5 * (next + next.transpose()) + slope.Q;
-  }
-  /// At rest are filter and derivatives, or neither.
-  void look() {
-    if (++since_look_ < SteadyState<N>::kStride) return;
-    since_look_ = 0;
-    bool all = gain.steady();
-    for (std::size_t i = 0; i < rest_.size(); ++i) {
-      // Measured against P itself: the derivatives are with respect to logarithms.
-      all = rest_[i].reached(gain.P + dP_[i]) && all;
-    }
-    steady_ = all;
-  }
-
   const Model& model_;
-  Eigen::Index count_;
   std::vector<Model> slopes_;
-  std::vector<bool> moves_;
-  std::vector<Matrix> dP_;
-  std::vector<SteadyState<N>> rest_;
-  int since_look_ = 0;
-  bool steady_ = false;
+  std::optional<GainIncrements<N>> increments_;
+  std::optional<RiccatiSlopes<N>> riccati_;
+  std::uint64_t steps_ = 0;
 };
 
 }  // namespace coast::noise

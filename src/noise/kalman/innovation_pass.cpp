@@ -30,7 +30,7 @@ class InnovationPass {
   using Columns = Eigen::Matrix<double, N, 3>;
 
   void skip() {
-    states_ = (model_.Phi * states_).eval();
+    states_ = model_.sparse.left(states_);
     gain_.skip();
   }
   void step(const Eigen::RowVector3d& z) {
@@ -38,7 +38,7 @@ class InnovationPass {
     const Eigen::RowVector3d e = z - model_.h * states_;
     sums_.products.noalias() += e.transpose() * e / gain_.S;
     sums_.log_determinant += std::log(gain_.S);
-    states_ = (model_.Phi * (states_ + gain_.k * e)).eval();
+    states_ = model_.sparse.left(Columns(states_ + gain_.k * e));
     gain_.step();
   }
   /// The gain rests: a <- A a + b z with constant A = Phi (I - k h), b = Phi k.

@@ -21,20 +21,20 @@ class MeanColumns {
 
   void skip(const GainSlopes<N>& gains) {
     for (std::size_t i = 0; i < slopes_.size(); ++i) slopes_[i] = advanced(i, slopes_[i], state_, gains);
-    state_ = (model_.Phi * state_).eval();
+    state_ = model_.sparse.left(state_);
   }
   void step(double tau, const GainSlopes<N>& gains) {
     const Eigen::RowVector2d e = Eigen::RowVector2d(1.0, tau) - model_.h * state_;
-    const double S = gains.gain.S;
-    const Columns updated = state_ + gains.gain.k * e;
+    const double S = gains.S();
+    const Columns updated = state_ + gains.k() * e;
     for (std::size_t i = 0; i < slopes_.size(); ++i) {
       const auto at = static_cast<Eigen::Index>(i);
       const Eigen::RowVector2d de = -model_.h * slopes_[i];
       const Eigen::Matrix2d cross = de.transpose() * e;
-      products_[i] += (cross + cross.transpose()) / S - gains.dS(at) / (S * S) * e.transpose() * e;
-      slopes_[i] = advanced(i, slopes_[i] + gains.gain.k * de + gains.dk.col(at) * e, updated, gains);
+      products_[i] += (cross + cross.transpose()) / S - gains.dS()(at) / (S * S) * e.transpose() * e;
+      slopes_[i] = advanced(i, slopes_[i] + gains.k() * de + gains.dk().col(at) * e, updated, gains);
     }
-    state_ = model_.Phi * updated;
+    state_ = model_.sparse.left(updated);
   }
   /// Where the gains rest. A filter at rest follows a ramp by a ramp: once second differences are gone, the rest is summed.
   void rest(std::size_t count, double tau, double tau_step, const GainSlopes<N>& gains) {
@@ -65,8 +65,8 @@ class MeanColumns {
   [[nodiscard]] Columns advanced(std::size_t i, const Columns& slope, const Columns& updated,
                                  const GainSlopes<N>& gains) const {
     const auto at = static_cast<Eigen::Index>(i);
-    Columns next = model_.Phi * slope;
-    if (gains.moves(at)) next += gains.dPhi(at) * updated;
+    Columns next = model_.sparse.left(slope);
+    if (!gains.dPhi(at).empty()) next += gains.dPhi(at).left(updated);
     return next;
   }
   /// Rows: of the columns, then their derivatives.
@@ -91,13 +91,13 @@ class MeanColumns {
       return n * start.row(i).transpose() * start.row(j) + squares * change.row(i).transpose() * change.row(j) +
              ones * (start.row(i).transpose() * change.row(j) + change.row(i).transpose() * start.row(j));
     };
-    const double S = gains.gain.S;
+    const double S = gains.S();
     const Eigen::Matrix2d plain = sum_of(0, 0);
     const double strides = n / static_cast<double>(kStride);
     for (std::size_t i = 0; i < slopes_.size(); ++i) {
       const auto at = static_cast<Eigen::Index>(i);
       const Eigen::Matrix2d cross = sum_of(at + 1, 0);
-      products_[i] += (cross + cross.transpose()) / S - gains.dS(at) / (S * S) * plain;
+      products_[i] += (cross + cross.transpose()) / S - gains.dS()(at) / (S * S) * plain;
       slopes_[i] += (slopes_[i] - before[i + 1]).eval() * strides;
     }
     state_ += (state_ - before[0]).eval() * strides;
@@ -155,10 +155,10 @@ class ScorePass {
   };
 
   void advance_states(const typename Model::Vector& a_upd) {
-    da_ = (model_.Phi * da_).eval();
+    da_ = model_.sparse.left(da_);
     for (Eigen::Index i = 0; i < count_; ++i)
-      if (slopes_.moves(i)) da_.col(i) += slopes_.dPhi(i) * a_upd;
-    a_ = model_.Phi * a_upd;
+      if (!slopes_.dPhi(i).empty()) da_.col(i) += slopes_.dPhi(i).left(a_upd);
+    a_ = model_.sparse.left(a_upd);
   }
 
   void skip() {
@@ -170,14 +170,14 @@ class ScorePass {
   void step(double y) {
     const double e = y - model_.h.dot(a_);
     const Row de = -model_.h * da_;
-    const double S = slopes_.gain.S;
-    const Eigen::VectorXd& dS = slopes_.dS;
+    const double S = slopes_.S();
+    const Eigen::VectorXd& dS = slopes_.dS();
     sums_.log_likelihood -= 0.5 * (std::log(S) + e * e / S);
     sums_.gradient -= 0.5 / S * ((1.0 - e * e / S) * dS + 2.0 * e * de.transpose());
     sums_.information.noalias() += de.transpose() * de / S;
     sums_.information.noalias() += 0.5 / (S * S) * dS * dS.transpose();
-    da_ += slopes_.gain.k * de + e * slopes_.dk;
-    advance_states(typename Model::Vector(a_ + slopes_.gain.k * e));
+    da_ += slopes_.k() * de + e * slopes_.dk();
+    advance_states(typename Model::Vector(a_ + slopes_.k() * e));
     slopes_.step();
   }
 
@@ -185,8 +185,9 @@ class ScorePass {
     if (values.empty()) return;
     const typename Model::Row h = model_.h;
     const typename Model::Matrix Phi = model_.Phi;
-    const typename Model::Vector k = slopes_.gain.k;
-    const Slopes Phi_dk = Phi * slopes_.dk;
+    const typename Model::Vector k = slopes_.k();
+    const Slopes Phi_dk = Phi * slopes_.dk();
+    const SparseTransition<N> sparse = model_.sparse;
     const typename Model::Vector Phi_k = Phi * k;
     typename Model::Vector a = a_;
     Slopes da = da_;
@@ -203,18 +204,18 @@ class ScorePass {
       for (Eigen::Index i = 0; i < count_; ++i)
         for (Eigen::Index j = 0; j <= i; ++j) de_de(i, j) += de(i) * de(j);
       const typename Model::Vector a_upd = a + k * e;
-      next.noalias() = Phi * da;
+      next = sparse.left(da);
       for (Eigen::Index i = 0; i < count_; ++i) {
         next.col(i) += Phi_k * de(i) + Phi_dk.col(i) * e;
-        if (slopes_.moves(i)) next.col(i) += slopes_.dPhi(i) * a_upd;
+        if (!slopes_.dPhi(i).empty()) next.col(i) += slopes_.dPhi(i).left(a_upd);
       }
       da.swap(next);
-      a.noalias() = Phi * a_upd;
+      a = sparse.left(a_upd);
     }
     a_ = a;
     da_ = da;
-    const double S = slopes_.gain.S;
-    const Eigen::VectorXd& dS = slopes_.dS;
+    const double S = slopes_.S();
+    const Eigen::VectorXd& dS = slopes_.dS();
     const auto n = static_cast<double>(values.size());
     sums_.log_likelihood -= 0.5 * (n * std::log(S) + ee / S);
     sums_.gradient -= 0.5 / S * ((n - ee / S) * dS + 2.0 * e_de.transpose());
