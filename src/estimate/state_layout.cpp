@@ -61,7 +61,7 @@ void StateLayout::add_sensor(const noise::ImuErrorModel& model, noise::Sensor se
   for (int axis = 0; axis < 3; ++axis) {
     density_s(axis) = model.white_density(sensor, axis).value;
     for (const noise::ProcessPtr& process : model.axes(sensor)[static_cast<std::size_t>(axis)]) {
-      if (process->states() == 0) continue;
+      if (process->states() == 0 || process->as_white()) continue;
       SensorBlock block;
       block.process = process;
       block.offset = size_;

@@ -40,8 +40,12 @@ long double form(const Row& a, const Matrix& M) {
 
 }  // namespace
 
+Eigen::VectorXcd Autoregression::poles(const Eigen::VectorXd& coefficients) {
+  return companion_of(coefficients).eigenvalues();
+}
+
 double Autoregression::largest_pole(const Eigen::VectorXd& coefficients) {
-  return companion_of(coefficients).eigenvalues().cwiseAbs().maxCoeff();
+  return poles(coefficients).cwiseAbs().maxCoeff();
 }
 
 Autoregression::Autoregression(const Eigen::VectorXd& coefficients, double innovation_variance)

@@ -20,6 +20,8 @@ class Autoregression {
   Autoregression(const Eigen::VectorXd& coefficients, double innovation_variance);
 
   [[nodiscard]] Eigen::Index order() const { return A_.rows(); }
+  /// Of one step; of the companion matrix.
+  [[nodiscard]] static Eigen::VectorXcd poles(const Eigen::VectorXd& coefficients);
   /// Largest modulus of a pole; the series is stationary if it is below 1, and only then is there a covariance.
   [[nodiscard]] static double largest_pole(const Eigen::VectorXd& coefficients);
   /// P = A P A' + b b' innovation_variance: the covariance of the state at any time.

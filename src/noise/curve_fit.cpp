@@ -90,7 +90,7 @@ NonNegative non_negative_fit(const Eigen::MatrixXd& A, const Eigen::VectorXd& b)
 }
 
 /// Rates over a logarithmic grid: ascending where neighbours are of the same process, so that no combination comes twice. Of
-/// many rates one after the other is moved over its grid.
+/// many rates, and of partial autocorrelations, whose curves cost more, one after the other is moved over its grid.
 class RateGrid {
  public:
   RateGrid(const SumModel& model, const Roles& roles, const std::vector<Interval>& ranges, const Target& target)
@@ -100,7 +100,9 @@ class RateGrid {
   std::vector<double> best() {
     std::vector<double> u(model_.parameters());
     for (std::size_t i = 0; i < u.size(); ++i) u[i] = ranges_[i].lower;
-    if (roles_.rates.size() <= kTogether) {
+    const auto partials = std::ranges::count_if(
+        roles_.rates, [&](std::size_t i) { return model_.parameter(i).kind == ParameterInfo::Kind::kPartial; });
+    if (roles_.rates.size() <= kTogether && partials <= 1) {
       vary(0, 0, u);
       return best_;
     }

@@ -55,17 +55,25 @@ ImuErrorModel ImuErrorModel::from(const config::Node& file) {
   return model;
 }
 
+namespace {
+
+double white_for_filter(const Process& process) {
+  return process.white_density().value + process.as_white().value_or(geo::Psd{}).value;
+}
+
+}  // namespace
+
 geo::Psd ImuErrorModel::white_density(Sensor sensor, int axis) const {
   geo::Psd sum;
   for (const ProcessPtr& process : axes(sensor)[static_cast<std::size_t>(axis)])
-    if (process->input() == Input::kOne) sum.value += process->white_density().value;
+    if (process->input() == Input::kOne) sum.value += white_for_filter(*process);
   return sum;
 }
 
 double ImuErrorModel::bias_sd(Sensor sensor, int axis) const {
   double variance = 0.0;
   for (const ProcessPtr& process : axes(sensor)[static_cast<std::size_t>(axis)]) {
-    if (process->states() == 0 || process->input() != Input::kOne) continue;
+    if (process->states() == 0 || process->input() != Input::kOne || process->as_white()) continue;
     Eigen::MatrixXd P = Eigen::MatrixXd::Zero(process->states(), process->states());
     Eigen::RowVectorXd h = Eigen::RowVectorXd::Zero(process->states());
     process->initial_covariance(P);
@@ -80,8 +88,8 @@ ImuErrorModel ImuErrorModel::with_white_noise_scaled(Sensor sensor, double facto
   if (factor == 1.0) return scaled;  // what rounds its samples goes on doing so
   for (auto& axis : sensor == Sensor::kGyro ? scaled.gyro_ : scaled.accel_)
     for (ProcessPtr& process : axis)
-      if (process->white_density().value > 0.0)
-        process = make_white_noise(std::sqrt(process->white_density().value) * factor, sensor);
+      if (const double density = white_for_filter(*process); density > 0.0)
+        process = make_white_noise(std::sqrt(density) * factor, sensor);
   return scaled;
 }
 

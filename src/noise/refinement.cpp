@@ -118,20 +118,21 @@ std::optional<Step> with_vibration(const Step& now, const Spectrum& spectrum) {
   return step;
 }
 
-/// Sampled, a Gauss-Markov process faster than the samples is an AR(1): where nothing else stands for the sensor's own noise,
-/// it is named so, and can grow.
+/// Sampled, a Gauss-Markov process faster than the samples is an AR(1): it is named so, and as the sum's base can grow.
 void name_base(Candidate& candidate, double interval) {
   constexpr double kFast = 0.3;  // of an interval
-  if (base_of(candidate.model) != nullptr) return;
   for (const SumModel::Term& term : candidate.model.terms()) {
     if (term.process != &estimable("gauss_markov") || std::exp(candidate.fit.u[term.parameter]) * interval < kFast) continue;
-    std::vector<const Estimable*> processes;
-    for (const SumModel::Term& other : candidate.model.terms())
-      processes.push_back(&other == &term ? &estimable("ar(1)") : other.process);
     const double phi = std::exp(-std::exp(candidate.fit.u[term.parameter]) * interval);
-    candidate.fit.u[term.parameter] = std::atanh(phi);
-    candidate.fit.u[term.parameter + 1] += std::log(1.0 - phi * phi);
+    std::vector<const Estimable*> processes{&estimable("ar(1)")};
+    std::vector<double> u{std::atanh(phi), candidate.fit.u[term.parameter + 1] + std::log(1.0 - phi * phi)};
+    for (const SumModel::Term& other : candidate.model.terms()) {
+      if (&other == &term) continue;
+      processes.push_back(other.process);
+      std::ranges::copy(own(candidate.fit.u, other), std::back_inserter(u));
+    }
     candidate.model = SumModel(processes, candidate.model.mean());
+    candidate.fit.u = u;
     return;
   }
 }

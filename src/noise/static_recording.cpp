@@ -46,7 +46,11 @@ GridStretch stretch_of(const record::ImuRecording& imu, const RecordingPart& par
       sum += samples[i].dt;
       count += 1.0;
     }
-  stretch.interval = count > 0.0 ? sum / count : 1.0 / imu.rate_hz;
+  // Times in seconds of a week have their rounding: a rate that is that close to whole thousandths of a Hz is meant.
+  constexpr double kMeant = 1e-9;
+  const double rate = count > 0.0 ? count / sum : imu.rate_hz;
+  const double round = std::round(1e3 * rate) / 1e3;
+  stretch.interval = 1.0 / (std::abs(rate - round) < kMeant * rate ? round : rate);
   return stretch;
 }
 

@@ -17,6 +17,7 @@ const std::vector<MotionKind>& motions() {
       {"aircraft_lines", "aircraft flying lines at 60 m/s joined by turns with 45 degrees of bank", 480.0, aircraft_lines},
       {"boat", "survey boat in swell and chop", 200.0, boat},
       {"ski", "skier with swings at 2 to 3 Hz and 35 degrees of roll", 200.0, ski},
+      {"at_rest", "nothing moves: a static record, for calibration", 10.0, at_rest},
       {"pedestrian", "walker with the IMU on the body, moving at 5 to 10 Hz", 100.0, pedestrian},
   };
   return kTable;

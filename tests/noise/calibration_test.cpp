@@ -97,6 +97,45 @@ TEST(Calibration, SmoothedComponentsAddUpToTheSignalLessWhiteNoise) {
   EXPECT_NEAR(left, 0.09, 4.0 * 0.09 * std::sqrt(2.0 / 3000.0));  // E v^2 given the record, on average the variance
 }
 
+// A sensor with a filter of its own on a table that rings at 0.56 Hz and at 20 Hz, 10 min at 100 Hz: the sum and the bands are
+// found, and the record's Allan curve is one of the estimate's.
+TEST(Calibration, VibrationIsFoundInALongRecord) {
+  const SumModel truth({&estimable("ar(1)"), &estimable("gauss_markov"), &estimable("ar(2)"), &estimable("ar(2)")},
+                       Mean::kLevel);
+  struct Ringing {
+    double frequency, width, variance;
+  };
+  const Ringing ringing[] = {{0.56, 0.02, 0.02}, {20.0, 1.0, 0.05}};
+  std::vector<double> u{std::atanh(0.17), 0.0, std::log(0.01), std::log(0.05)};
+  for (const Ringing& r : ringing) {
+    const double radius = std::exp(-M_PI * r.width * 0.01);
+    const double first = 2.0 * radius * std::cos(2.0 * M_PI * r.frequency * 0.01) / (1.0 + radius * radius);
+    const double second = -radius * radius;
+    u.insert(u.end(),
+             {std::atanh(first), std::atanh(second), std::log(r.variance * (1.0 - first * first) * (1.0 - second * second))});
+  }
+  const StaticSignal record = realisation(truth, u, 0.01, 60000, 4);
+  const AxisCalibration result = calibrate({record}, {.realisations = 60});
+  EXPECT_TRUE(result.best().on_all_samples);
+  EXPECT_TRUE(result.band.inside) << result.best().model.name();
+  EXPECT_GT(result.whiteness.p_value, 1e-3);
+  const Likelihood likelihood({record}, truth);
+  // No worse than the truth, by what four more parameters could gain by chance.
+  EXPECT_GT(result.best().fit.log_likelihood, likelihood.value(u).log_likelihood - 1.0);
+  EXPECT_LE(result.best().model.parameters(), truth.parameters() + 2);
+  std::vector<double> off;  // of every resonance from the slow one; the fast one may have become part of the base
+  for (const SumModel::Term& term : result.best().model.terms()) {
+    if (term.process != &estimable("ar(2)")) continue;
+    const double first = std::tanh(result.best().fit.u[term.parameter]);
+    const double second = std::tanh(result.best().fit.u[term.parameter + 1]);
+    const double frequency = std::acos(first * (1.0 - second) / (2.0 * std::sqrt(-second))) / (2.0 * M_PI * 0.01);
+    off.push_back(std::abs(frequency - 0.56));
+  }
+  // A line of width w is placed to some sqrt(w / (2 pi T)) in T seconds, 0.002 Hz; four of these.
+  ASSERT_FALSE(off.empty()) << result.best().model.name();
+  EXPECT_LT(std::ranges::min(off), 0.008);
+}
+
 TEST(Calibration, RefusesShortAndConstantRecords) {
   EXPECT_THROW(static_cast<void>(calibrate({drifting(1, 50)}, {})), NumericalError);
   EXPECT_THROW(static_cast<void>(calibrate({StaticSignal::regular(std::vector<double>(1000, 2.5), 1.0)}, {})), NumericalError);

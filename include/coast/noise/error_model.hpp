@@ -18,7 +18,7 @@ class ImuErrorModel {
   [[nodiscard]] static ImuErrorModel from(const config::Node& file);
 
   [[nodiscard]] const Axes& axes(Sensor sensor) const { return sensor == Sensor::kGyro ? gyro_ : accel_; }
-  /// Sum of the white densities of an axis, [signal]^2/Hz.
+  /// White noise of an axis as a filter takes it, [signal]^2/Hz: the white densities, and what may be taken for white.
   [[nodiscard]] geo::Psd white_density(Sensor sensor, int axis) const;
   /// Standard deviation of the additive states of an axis at the start, [signal]: what alignment has to expect of a bias.
   [[nodiscard]] double bias_sd(Sensor sensor, int axis) const;

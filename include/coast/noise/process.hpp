@@ -61,6 +61,10 @@ class Process {
   [[nodiscard]] virtual std::optional<Rounding> rounding() const { return {}; }
   /// Density of the white part of the output, [signal]^2/Hz; zero for a process that has states only.
   [[nodiscard]] virtual geo::Psd white_density() const { return {}; }
+  /// Density at frequency zero, [signal]^2/Hz, of a process with states that a navigation filter may take for white noise: one
+  /// that forgets within a tenth of a second, as the sensor's own filter, or only rings, as vibration. Simulation and curves
+  /// know the difference; nothing where a filter needs the states.
+  [[nodiscard]] virtual std::optional<geo::Psd> as_white() const { return {}; }
   /// Allan variance of the error at averaging time tau (s, > 0), [signal]^2. Nothing for a process that multiplies the true
   /// signal, and where the variance does not exist. The Haar wavelet variance at the same scale is half of it.
   [[nodiscard]] virtual std::optional<double> allan_variance(double tau) const = 0;

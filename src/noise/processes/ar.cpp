@@ -4,6 +4,8 @@
 #include <Eigen/LU>
 #include <array>
 #include <cmath>
+#include <complex>
+#include <numbers>
 
 #include "autoregression.hpp"
 #include "bounded_search.hpp"
@@ -64,6 +66,17 @@ class Ar final : public Process {
       P = series_.covariance().cast<double>();
   }
   [[nodiscard]] std::optional<double> sample_interval() const override { return 1.0 / p_.rate_hz; }
+  [[nodiscard]] std::optional<geo::Psd> as_white() const override {
+    constexpr double kForgets = 0.1;  // s
+    constexpr double kRings = 0.05;   // Hz
+    for (const std::complex<double>& pole : Autoregression::poles(p_.coefficients)) {
+      const bool forgets = -std::log(std::abs(pole)) * p_.rate_hz * kForgets > 1.0;
+      const bool rings = std::abs(std::arg(pole)) * p_.rate_hz > 2.0 * std::numbers::pi * kRings;
+      if (!forgets && !rings) return {};
+    }
+    const double gain = p_.innovation_sigma / (1.0 - p_.coefficients.sum());
+    return geo::Psd{gain * gain / p_.rate_hz};
+  }
   /// Of means over whole samples, exactly. Between, the variance is interpolated linearly; below one sample it falls to zero
   /// with tau, as for any signal that is held.
   [[nodiscard]] std::optional<double> allan_variance(double tau) const override {

@@ -4,6 +4,7 @@
 
 namespace coast::simulate {
 
+[[nodiscard]] MotionPlan at_rest(const MotionParameters& parameters);
 [[nodiscard]] MotionPlan car_roundabout(const MotionParameters& parameters);
 [[nodiscard]] MotionPlan car_straight(const MotionParameters& parameters);
 [[nodiscard]] MotionPlan city(const MotionParameters& parameters);
