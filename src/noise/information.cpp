@@ -165,7 +165,7 @@ Eigen::MatrixXd record_information(const Likelihood& likelihood, const std::vect
   if (likelihood.samples() <= kMostValues) return information;
   // A resonance that rings longer than a block is in no block: lines of the spectrum hold it.
   constexpr double kKnown = 4.0;
-  const Eigen::MatrixXd by_lines = spectral_slope(spectrum_of(likelihood.records()), likelihood.model(), u).information;
+  Eigen::MatrixXd by_lines = spectral_slope(spectrum_of(likelihood.records()), likelihood.model(), u).information;
   const Eigen::VectorXd lines = by_lines.diagonal();
   for (Eigen::Index i = 0; i < p; ++i)
     if (lines(i) > kKnown && lines(i) > 2.0 * information(i, i)) return by_lines;

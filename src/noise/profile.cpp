@@ -160,7 +160,9 @@ class Extracts {
   [[nodiscard]] const Followed& of(std::size_t which, const Eigen::MatrixXd& information) const {
     constexpr double kHalf = 0.5;
     const auto i = static_cast<Eigen::Index>(which);
-    return on_means_ && on_means_->top().converged && on_means_->information()(i, i) > kHalf * information(i, i) ? *on_means_ : *on_spectrum_;
+    return on_means_ && on_means_->top().converged && on_means_->information()(i, i) > kHalf * information(i, i)
+               ? *on_means_
+               : *on_spectrum_;
   }
 
  private:

@@ -24,7 +24,7 @@ struct Step {
   double cost = 0.0;  ///< criterion on the spectrum
 };
 
-std::span<const double> own(const std::vector<double>& u, const SumModel::Term& term) {
+std::span<const double> values_of(const std::vector<double>& u, const SumModel::Term& term) {
   return std::span(u).subspan(term.parameter, term.parameters);
 }
 
@@ -80,12 +80,12 @@ std::vector<double> start_from(const Step& now, const SumModel& model, const Spe
       continue;
     }
     used[from] = true;
-    std::ranges::copy(own(now.u, now.model.terms()[from]), u.begin() + static_cast<std::ptrdiff_t>(term.parameter));
+    std::ranges::copy(values_of(now.u, now.model.terms()[from]), u.begin() + static_cast<std::ptrdiff_t>(term.parameter));
   }
   if (fresh == nullptr) return u;
   const auto gone = static_cast<std::size_t>(std::ranges::find(used, false) - used.begin());
   if (gone < used.size())
-    raise_order(now.model.terms()[gone], own(now.u, now.model.terms()[gone]), spectrum.interval,
+    raise_order(now.model.terms()[gone], values_of(now.u, now.model.terms()[gone]), spectrum.interval,
                 std::span(u).subspan(fresh->parameter, fresh->parameters));
   else
     place(model, *fresh, spectrum, ranges, u);
@@ -129,7 +129,7 @@ void name_base(Candidate& candidate, double interval) {
     for (const SumModel::Term& other : candidate.model.terms()) {
       if (&other == &term) continue;
       processes.push_back(other.process);
-      std::ranges::copy(own(candidate.fit.u, other), std::back_inserter(u));
+      std::ranges::copy(values_of(candidate.fit.u, other), std::back_inserter(u));
     }
     candidate.model = SumModel(processes, candidate.model.mean());
     candidate.fit.u = u;

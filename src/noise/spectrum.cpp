@@ -60,7 +60,7 @@ class Density {
   }
 
   /// @param slope  of the logarithms of parameters; empty: not wanted
-  double at(double frequency, Eigen::Ref<Eigen::VectorXd> slope) const {
+  double at(double frequency, Eigen::VectorXd& slope) const {
     const Complex z = std::polar(1.0, 2.0 * std::numbers::pi * frequency * interval_);
     double sum = 0.0;
     for (const Term& term : terms_) sum += add(term, z, slope);
@@ -74,7 +74,7 @@ class Density {
     std::vector<SampleBlock> slopes;
   };
 
-  static double add(const Term& term, const Complex& z, Eigen::Ref<Eigen::VectorXd> slope) {
+  static double add(const Term& term, const Complex& z, Eigen::VectorXd& slope) {
     const SampleBlock& block = term.block;
     const Eigen::Index n = block.h.size();
     double density = block.white;
@@ -85,9 +85,9 @@ class Density {
       A.diagonal().array() += z;
       const Eigen::PartialPivLU<ComplexMatrix> factor(A);
       g = factor.transpose().solve(block.h.transpose().cast<Complex>());
-      const ComplexVector Qg = block.Q.cast<Complex>() * g.conjugate();
-      density += (g.transpose() * Qg).value().real();
-      if (!term.slopes.empty()) b = factor.solve(Qg);
+      const ComplexVector driven = block.Q.cast<Complex>() * g.conjugate();
+      density += (g.transpose() * driven).value().real();
+      if (!term.slopes.empty()) b = factor.solve(driven);
     }
     for (std::size_t i = 0; i < term.slopes.size(); ++i) {
       const SampleBlock& d = term.slopes[i];

@@ -15,17 +15,18 @@ namespace {
 
 using test::logs;
 
-struct Case {
+struct ComparedSum {
   const char* name;  // of the function in likelihood.R
   SumModel model;
   std::vector<double> u;
 };
 
-std::vector<Case> cases() {
-  std::vector<Case> all{{"white_markov", test::sum({"white_noise", "gauss_markov"}, Mean::kZero), logs({0.09, 0.02, 0.25})},
-                        {"white_markov_walk", test::sum({"white_noise", "gauss_markov", "random_walk"}, Mean::kZero),
-                         logs({0.09, 0.1, 0.25, 1e-3})},
-                        {"ar2_markov", test::sum({"ar(2)", "gauss_markov"}, Mean::kZero), logs({1.0, 1.0, 0.09, 0.01, 0.25})}};
+std::vector<ComparedSum> compared_sums() {
+  std::vector<ComparedSum> all{
+      {"white_markov", test::sum({"white_noise", "gauss_markov"}, Mean::kZero), logs({0.09, 0.02, 0.25})},
+      {"white_markov_walk", test::sum({"white_noise", "gauss_markov", "random_walk"}, Mean::kZero),
+       logs({0.09, 0.1, 0.25, 1e-3})},
+      {"ar2_markov", test::sum({"ar(2)", "gauss_markov"}, Mean::kZero), logs({1.0, 1.0, 0.09, 0.01, 0.25})}};
   all.back().u[0] = std::atanh(0.5);
   all.back().u[1] = std::atanh(-0.6);
   return all;
@@ -35,7 +36,7 @@ class AgainstR : public testing::TestWithParam<int> {};
 
 TEST_P(AgainstR, LikelihoodAndOptimumAreTheSame) {
   if (std::system("command -v Rscript >/dev/null 2>&1") != 0) GTEST_SKIP() << "Rscript is not installed";
-  const Case c = cases()[static_cast<std::size_t>(GetParam())];
+  const ComparedSum c = compared_sums()[static_cast<std::size_t>(GetParam())];
   const StaticSignal record = StaticSignal::regular(test::simulate_block(c.model.block(c.u, 1.0), 2000, 17), 1.0);
   const std::filesystem::path folder = std::filesystem::path(testing::TempDir()) / fmt::format("coast-r-{}", c.name);
   std::filesystem::create_directories(folder);
@@ -71,8 +72,9 @@ TEST_P(AgainstR, LikelihoodAndOptimumAreTheSame) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(Likelihood, AgainstR, testing::Range(0, 3),
-                         [](const auto& param) { return std::string(cases()[static_cast<std::size_t>(param.param)].name); });
+INSTANTIATE_TEST_SUITE_P(Likelihood, AgainstR, testing::Range(0, 3), [](const auto& param) {
+  return std::string(compared_sums()[static_cast<std::size_t>(param.param)].name);
+});
 
 }  // namespace
 }  // namespace coast::noise

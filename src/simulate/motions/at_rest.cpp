@@ -6,7 +6,8 @@ namespace coast::simulate {
 
 MotionPlan at_rest(const MotionParameters& parameters) {
   Drive drive(parameters);
-  drive.cruise(drive.left(0.0)).name_since("rest", 0.0);
+  const double begin = drive.now();
+  drive.cruise(drive.left(0.0)).name_since("rest", begin);
   return drive.plan();
 }
 
