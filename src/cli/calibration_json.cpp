@@ -43,6 +43,7 @@ Json candidate_json(const noise::Candidate& c, bool chosen) {
   put(j, "bic", c.bic);
   put(j, "aicc", c.aicc);
   put(j, "held_out_per_sample", c.held_out);
+  j["on_all_samples"] = c.on_all_samples;
   j["converged"] = c.fit.converged;
   j["degenerate"] = c.degenerate;
   j["chosen"] = chosen;

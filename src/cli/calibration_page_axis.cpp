@@ -79,35 +79,57 @@ report::Table parameter_table(const CalibratedAxis& axis) {
   return table;
 }
 
+namespace {
+
+/// The largest log-likelihood and the smallest criteria of the candidates that are compared on the same samples.
+struct BestOf {
+  double log_likelihood = -std::numeric_limits<double>::infinity();
+  double bic = std::numeric_limits<double>::infinity();
+  double aicc = std::numeric_limits<double>::infinity();
+};
+BestOf best_of(const std::vector<noise::Candidate>& candidates, bool on_all_samples) {
+  BestOf best;
+  for (const noise::Candidate& c : candidates) {
+    if (c.on_all_samples != on_all_samples) continue;
+    best.log_likelihood = std::max(best.log_likelihood, c.compared_log_likelihood);
+    best.bic = std::min(best.bic, c.bic);
+    best.aicc = std::min(best.aicc, c.aicc);
+  }
+  return best;
+}
+
+}  // namespace
+
 report::Table candidate_table(const CalibratedAxis& axis) {
   const noise::AxisCalibration& r = axis.result;
-  double most = -std::numeric_limits<double>::infinity();
-  double bic = std::numeric_limits<double>::infinity();
-  double aicc = bic;
-  bool held_out = false;
-  for (const noise::Candidate& c : r.candidates) {
-    most = std::max(most, c.compared_log_likelihood);
-    bic = std::min(bic, c.bic);
-    aicc = std::min(aicc, c.aicc);
-    held_out = held_out || c.held_out;
-  }
+  const BestOf of_extracts = best_of(r.candidates, false);
+  const BestOf of_all = best_of(r.candidates, true);
+  const bool held_out = std::ranges::any_of(r.candidates, [](const noise::Candidate& c) { return c.held_out.has_value(); });
   report::Table table;
   table.id = id_of(axis) + "-candidates";
   table.title = "Candidates";
   table.caption =
-      "Differences to the largest log-likelihood and to the smallest criteria. Degenerate: a variance went to zero, so the sum "
-      "without that process says the same.";
-  table.columns = {{"sum of processes", "", false}, {"parameters", ""}, {"log-likelihood", ""}, {"BIC", ""}, {"AICc", ""}};
+      "Differences to the largest log-likelihood and to the smallest criteria among those compared on the same samples: a long "
+      "record is searched on block means and its beginning first, and the best go on with all samples. Degenerate: a variance "
+      "went to zero, so the sum without that process says the same.";
+  table.columns = {{"sum of processes", "", false},
+                   {"compared on", "", false},
+                   {"parameters", ""},
+                   {"log-likelihood", ""},
+                   {"BIC", ""},
+                   {"AICc", ""}};
   if (held_out) table.columns.push_back({"held out, per sample", ""});
   table.columns.push_back({"remark", "", false});
   for (std::size_t i = 0; i < r.candidates.size(); ++i) {
     const noise::Candidate& c = r.candidates[i];
+    const BestOf& best = c.on_all_samples ? of_all : of_extracts;
     const auto difference = [](double value, double reference) {
       return std::isfinite(value) ? decimals(value - reference, 1) : std::string("none");
     };
     std::vector<report::Cell> row =
-        cells({c.model.name(), fmt::format("{}", c.parameters), difference(c.compared_log_likelihood, most),
-               difference(c.bic, bic), difference(c.aicc, aicc)});
+        cells({c.model.name(), c.on_all_samples ? "all samples" : "extracts", fmt::format("{}", c.parameters),
+               difference(c.compared_log_likelihood, best.log_likelihood), difference(c.bic, best.bic),
+               difference(c.aicc, best.aicc)});
     if (held_out) row.push_back({c.held_out ? fmt::format("{:.6f}", *c.held_out) : "none"});
     row.push_back({i == r.chosen  ? "chosen"
                    : c.degenerate ? "degenerate"

@@ -4,7 +4,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
+#include <optional>
+#include <span>
 
 #include "bounded_search.hpp"
 #include "candidate.hpp"
@@ -154,7 +157,8 @@ class Refinement {
     Step now = start;
     for (bool gained = true; gained;) gained = follow(steps_up(now), now);
     for (bool gained = true; gained;) gained = follow(steps_down(now), now);
-    best = on_all_samples(now.model, now.u);
+    const auto known = std::ranges::find_if(candidates_, [&](const Candidate& c) { return is(c, now.model); });
+    best = known != candidates_.end() ? *known : on_all_samples(now.model, now.u);
     if (start.cost < now.cost + kNear) try_on_all_samples(start, best);
     for (bool gained = true; gained;) gained = settle(best);
   }
@@ -221,9 +225,11 @@ class Refinement {
     if (!tried(drifting)) steps.push_back({drifting, best.fit.u});
     return std::ranges::any_of(steps, [&](const Step& step) { return try_on_all_samples(step, best); });
   }
+  static bool is(const Candidate& candidate, const SumModel& model) {
+    return candidate.on_all_samples && candidate.model.name() == model.name();
+  }
   bool tried(const SumModel& model) const {
-    return std::ranges::any_of(candidates_,
-                               [&](const Candidate& c) { return c.on_all_samples && c.model.name() == model.name(); });
+    return std::ranges::any_of(candidates_, [&](const Candidate& c) { return is(c, model); });
   }
   bool try_on_all_samples(const Step& step, Candidate& best) {
     if (tried(step.model)) return false;

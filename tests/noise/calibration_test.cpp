@@ -2,7 +2,10 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cmath>
 #include <numeric>
+#include <set>
 
 #include "coast/record/error.hpp"
 #include "noise/static_record.hpp"
@@ -40,7 +43,11 @@ TEST(Calibration, FindsTheSumTheValuesAndTheLevelOfASimulatedRecord) {
   EXPECT_NEAR(result.means[0].value(1), 4e-4, 4.0 * std::sqrt(result.means[0].covariance(1, 1)));
   ASSERT_TRUE(result.em);
   EXPECT_LE(result.em->log_likelihood, result.best().fit.log_likelihood + 1e-6);
-  for (const Candidate& candidate : result.candidates) EXPECT_TRUE(std::isfinite(candidate.bic)) << candidate.model.name();
+  std::set<std::string> names;
+  for (const Candidate& candidate : result.candidates) {
+    EXPECT_TRUE(std::isfinite(candidate.bic)) << candidate.model.name();
+    EXPECT_TRUE(names.insert(candidate.model.name()).second) << candidate.model.name();
+  }
 }
 
 TEST(Calibration, OutliersAreReportedAndMayBeLeftOut) {
