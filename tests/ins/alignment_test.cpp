@@ -113,6 +113,7 @@ TEST(Alignment, StandingStartAtEveryLatitude) {
 TEST(Alignment, MovingStartOfEveryMotionInBothHemispheres) {
   double latitude = 46.5;
   for (const simulate::MotionKind& kind : simulate::motions()) {
+    if (kind.name == "at_rest") continue;  // never moves
     SCOPED_TRACE(kind.name);
     latitude = latitude > 0.0 ? -35.0 : 46.5;
     const Mission m = mission(std::string(kind.name), {latitude * kDegree, 0.1, 400.0}, kTactical, 150.7, 10.0);
