@@ -18,7 +18,7 @@ class SparseTransition {
  public:
   using Matrix = Eigen::Matrix<double, N, N>;
 
-  explicit SparseTransition(const Matrix& Phi) {
+  explicit SparseTransition(const Matrix& Phi) : whole_(Phi) {
     for (int c = 0; c < N; ++c)
       for (int r = 0; r < N; ++r)
         if (Phi(r, c) != 0.0) elements_[static_cast<std::size_t>(count_++)] = {r, c, Phi(r, c)};
@@ -27,6 +27,7 @@ class SparseTransition {
   /// Phi M
   template <class Columns>
   [[nodiscard]] Columns left(const Columns& M) const {
+    if constexpr (N <= kDense) return whole_ * M;
     Columns product = Columns::Zero(M.rows(), M.cols());
     for (Eigen::Index c = 0; c < M.cols(); ++c)
       for (int k = 0; k < count_; ++k) {
@@ -53,6 +54,9 @@ class SparseTransition {
     int col = 0;
     double value = 0.0;
   };
+  static constexpr int kDense = 4;  // up to here a whole product costs less than finding the elements
+
+  Matrix whole_;
   std::array<Element, static_cast<std::size_t>(N) * N> elements_{};
   int count_ = 0;
 };
