@@ -24,22 +24,26 @@ ReadRecord summary_of(const noise::StaticRecording& recording) {
   return {recording.source, first.duration(), first.length(), first.values.size(), first.runs.size() - 1, recording.remarks};
 }
 
-// Reads one recording after the other, so that the raw samples of one only are in memory.
+// Reads one recording after the other, so that the raw samples of one only are in memory: those to estimate from, then those to
+// test on.
 std::vector<noise::StaticRecording> read_records(const CalibrationConfig& config, CalibrationResult& result,
                                                  ProgressLine& line) {
   // Calibration needs intervals only; any week will do where none is stated.
   constexpr geo::GpsTime kAnyWeek;
+  std::vector<CalibrationRecord> files = config.records;
+  files.insert(files.end(), config.tested_on.begin(), config.tested_on.end());
   std::vector<noise::StaticRecording> records;
-  for (std::size_t i = 0; i < config.records.size(); ++i) {
-    line.show("reading", static_cast<double>(i) / static_cast<double>(config.records.size()));
-    const record::ImuRecording imu = io::read_imu(config.records[i].file, kAnyWeek);
+  for (const CalibrationRecord& file : files) {
+    line.show("reading", static_cast<double>(records.size()) / static_cast<double>(files.size()));
+    const record::ImuRecording imu = io::read_imu(file.file, kAnyWeek);
     for (const record::Event& event : imu.events)
       if (event.kind != "imu_gap")
         result.events.push_back(event);  // no gap is bridged here: the remarks say what becomes of it
-    records.push_back(noise::static_recording(imu, config.records[i].part));
+    records.push_back(noise::static_recording(imu, file.part));
   }
   noise::share_interval(records);
-  for (const noise::StaticRecording& record : records) result.records.push_back(summary_of(record));
+  for (std::size_t i = 0; i < records.size(); ++i)
+    (i < config.records.size() ? result.records : result.tested_on).push_back(summary_of(records[i]));
   result.interval = records.front().interval;
   return records;
 }
@@ -82,11 +86,16 @@ void estimate(const CalibrationConfig& config, const std::vector<noise::StaticRe
   tbb::parallel_for(std::size_t{0}, config.axes.size(), [&](std::size_t i) {
     CalibratedAxis& axis = result.axes[i];
     axis.axis = config.axes[i];
-    for (const noise::StaticRecording& record : records) axis.signals.push_back(record.of(axis.axis.sensor, axis.axis.axis));
+    std::vector<noise::StaticSignal> others;
+    for (std::size_t r = 0; r < records.size(); ++r)
+      (r < config.records.size() ? axis.signals : others).push_back(records[r].of(axis.axis.sensor, axis.axis.axis));
     noise::CalibrationOptions options = config.options(axis.axis.sensor);
     options.progress = [&](const char*, double fraction) { progress.set(i, kSearch * fraction); };
     try {
       axis.result = noise::calibrate(axis.signals, options);
+      for (const noise::StaticSignal& record : others)
+        axis.tests.push_back(
+            {record.source, noise::test_on(record, axis.result.best().model, axis.result.best().fit.u, options)});
     } catch (const NumericalError& error) {
       throw NumericalError(axis.axis.title(), "", error.what());
     }
@@ -98,8 +107,9 @@ void estimate(const CalibrationConfig& config, const std::vector<noise::StaticRe
 void print_warnings(const CalibrationResult& result) {
   for (const record::Event& event : result.events)
     if (event.severity == record::Event::Severity::kWarning) fmt::print(stderr, "warning: {}\n", event.text);
-  for (const ReadRecord& record : result.records)
-    for (const std::string& remark : record.remarks) fmt::print(stderr, "warning: {}: {}\n", record.source, remark);
+  for (const auto* records : {&result.records, &result.tested_on})
+    for (const ReadRecord& record : *records)
+      for (const std::string& remark : record.remarks) fmt::print(stderr, "warning: {}: {}\n", record.source, remark);
 }
 
 }  // namespace

@@ -18,6 +18,8 @@ sensor: Analog Devices ADIS16405
 records:
   - {file: static1.csv, from_s: 60}
   - {file: static2.csv.gz, columns: {time: 1, gyro: [2, 3, 4], accel: [5, 6, 7]}, units: {gyro: deg/s, accel: g}}
+tested_on:
+  - {file: static3.csv}
 processes: {accel: {sum: [white_noise, gauss_markov, random_walk], drift: false}}
 turn_on_bias: {gyro: {sigma: 3, unit: deg/s}}
 )";
@@ -117,6 +119,8 @@ CalibrationConfig from_yaml(const std::filesystem::path& file) {
   const Node records = root.at("records");
   for (const Node& item : records.items()) config.records.push_back(record_from(item));
   if (config.records.empty()) throw records.error("an empty list", "at least one {file: ..}");
+  if (const auto others = root.find("tested_on"))
+    for (const Node& item : others->items()) config.tested_on.push_back(record_from(item));
   config.sensor = root.text("sensor", file.stem().string());
   config.axes = axes_from(root);
   config.common = options_from(root);

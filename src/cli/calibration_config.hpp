@@ -34,6 +34,7 @@ struct CalibrationConfig {
   std::filesystem::path file;
   std::string sensor;  ///< name of the product
   std::vector<CalibrationRecord> records;
+  std::vector<CalibrationRecord> tested_on;  ///< records that the estimate is held against
   std::vector<SensorAxis> axes;
   noise::CalibrationOptions common;  ///< without what differs between the sensors
   struct PerSensor {

@@ -109,6 +109,20 @@ Json band_json(const noise::CurveBand& band) {
           {"upper_95", band.upper}};
 }
 
+Json whiteness_json(const noise::Whiteness& whiteness) {
+  return {{"autocorrelation", whiteness.autocorrelation}, {"p_value", whiteness.p_value}};
+}
+
+Json test_json(const TestedRecord& tested) {
+  Json j = {{"source", tested.source},
+            {"log_likelihood_per_sample", tested.test.log_likelihood_per_sample},
+            {"innovation_variance", tested.test.innovation_variance},
+            {"innovations", whiteness_json(tested.test.whiteness)},
+            {"allan", curve_json(tested.test.curve)}};
+  if (!tested.test.band.tau.empty()) j["allan_band"] = band_json(tested.test.band);
+  return j;
+}
+
 Json own_json(const CalibratedAxis& axis) {
   Json list = Json::array();
   const noise::SumModel& model = axis.result.best().model;
@@ -122,6 +136,10 @@ Json own_json(const CalibratedAxis& axis) {
     list.push_back(std::move(values));
   }
   return list;
+}
+
+Json record_json(const ReadRecord& r) {
+  return {{"source", r.source}, {"samples", r.samples}, {"duration_s", r.duration}, {"holes", r.holes}, {"remarks", r.remarks}};
 }
 
 Json axis_json(const CalibratedAxis& axis) {
@@ -148,13 +166,14 @@ Json axis_json(const CalibratedAxis& axis) {
   j["candidates"] = Json::array();
   for (std::size_t i = 0; i < r.candidates.size(); ++i)
     j["candidates"].push_back(candidate_json(r.candidates[i], i == r.chosen));
-  j["innovations"] = {{"autocorrelation", r.whiteness.autocorrelation}, {"p_value", r.whiteness.p_value}};
+  j["innovations"] = whiteness_json(r.whiteness);
   j["outliers"] = outliers_json(r);
   j["allan"] = Json::array();
   for (const noise::AllanCurve& curve : r.curves) j["allan"].push_back(curve_json(curve));
   if (!r.band.tau.empty()) j["allan_band"] = band_json(r.band);
   put(j, "common_parameters_p_value", r.common_parameters_p);
   if (!axis.own.empty()) j["records_alone"] = own_json(axis);
+  for (const TestedRecord& tested : axis.tests) j["tests"].push_back(test_json(tested));
   j["seconds"] = r.seconds;
   return j;
 }
@@ -164,9 +183,8 @@ Json axis_json(const CalibratedAxis& axis) {
 std::string calibration_json(const CalibrationConfig& config, const CalibrationResult& result) {
   Json j = {{"schema", "coast.calibration/1"}, {"sensor", config.sensor}, {"rate_hz", 1.0 / result.interval}};
   j["records"] = Json::array();
-  for (const ReadRecord& r : result.records)
-    j["records"].push_back(
-        {{"source", r.source}, {"samples", r.samples}, {"duration_s", r.duration}, {"holes", r.holes}, {"remarks", r.remarks}});
+  for (const ReadRecord& r : result.records) j["records"].push_back(record_json(r));
+  for (const ReadRecord& r : result.tested_on) j["tested_on"].push_back(record_json(r));
   j["events"] = Json::array();
   for (const record::Event& event : result.events)
     j["events"].push_back({{"severity", event.severity == record::Event::Severity::kWarning ? "warning" : "info"},

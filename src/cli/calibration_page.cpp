@@ -120,13 +120,15 @@ report::Section records_section(const CalibrationConfig& config, const Calibrati
   report::Table table;
   table.id = "records-table";
   table.title = "What was read";
-  table.columns = {{"record", "", false}, {"samples", ""}, {"span", "", false}, {"holes", ""}};
-  for (const ReadRecord& r : result.records) {
-    table.rows.push_back(cells({std::filesystem::path(r.source).filename().string(), fmt::format("{}", r.samples),
-                                duration_text(r.duration), fmt::format("{}", r.holes)}));
-    for (const std::string& remark : r.remarks)
-      section.notes.push_back({report::Note::Kind::kWarning, std::filesystem::path(r.source).filename().string(), remark});
-  }
+  table.columns = {{"record", "", false}, {"samples", ""}, {"span", "", false}, {"holes", ""}, {"use", "", false}};
+  const auto add = [&](const ReadRecord& r, const char* use) {
+    const std::string name = std::filesystem::path(r.source).filename().string();
+    table.rows.push_back(
+        cells({name, fmt::format("{}", r.samples), duration_text(r.duration), fmt::format("{}", r.holes), use}));
+    for (const std::string& remark : r.remarks) section.notes.push_back({report::Note::Kind::kWarning, name, remark});
+  };
+  for (const ReadRecord& r : result.records) add(r, "estimate");
+  for (const ReadRecord& r : result.tested_on) add(r, "test");
   for (const record::Event& event : result.events)
     section.notes.push_back(
         {event.severity == record::Event::Severity::kWarning ? report::Note::Kind::kWarning : report::Note::Kind::kInfo, "",

@@ -21,25 +21,6 @@ report::Axis log_axis(std::string label, std::string unit) {
   return {std::move(label), std::move(unit), report::Axis::Scale::kLog, {}, {}};
 }
 
-/// A plot of deviations over averaging times, with the view on what the record shows: parts of a model go far below.
-report::Plot& allan_plot(report::Panel& panel, const CalibratedAxis& axis, const char* unit) {
-  panel.plots.push_back({});
-  report::Plot& plot = panel.plots.back();
-  plot.x = log_axis("averaging time", "s");
-  plot.y = log_axis("Allan deviation", unit);
-  plot.height_px = kAllanHeight;
-  double least = std::numeric_limits<double>::infinity();
-  double greatest = 0.0;
-  for (const noise::AllanCurve& curve : axis.result.curves)
-    for (const noise::AllanPoint& point : curve) {
-      if (!(point.allan.value > 0.0)) continue;
-      least = std::min(least, point.allan.value);
-      greatest = std::max(greatest, point.allan.value);
-    }
-  if (greatest > 0.0) plot.y.range.emplace(in_unit(least, unit) / 3.0, in_unit(greatest, unit) * 2.0);
-  return plot;
-}
-
 template <class Deviation>
 report::Series model_series(const noise::AllanCurve& curve, const char* unit, const Deviation& deviation) {
   constexpr int kPoints = 160;
@@ -134,6 +115,34 @@ report::Series allan_series(const noise::AllanCurve& curve, const char* unit, bo
   return series;
 }
 
+report::Series band_series(const noise::CurveBand& band, const char* unit) {
+  report::Series series;
+  series.x = series.band.emplace().x = band.tau;
+  for (std::size_t i = 0; i < band.tau.size(); ++i) {
+    series.y.push_back(in_unit(band.median[i], unit));
+    series.band->lower.push_back(in_unit(band.lower[i], unit));
+    series.band->upper.push_back(in_unit(band.upper[i], unit));
+  }
+  return series;
+}
+
+report::Plot allan_plot(const std::vector<const noise::AllanCurve*>& curves, const char* unit) {
+  report::Plot plot;
+  plot.x = log_axis("averaging time", "s");
+  plot.y = log_axis("Allan deviation", unit);
+  plot.height_px = kAllanHeight;
+  double least = std::numeric_limits<double>::infinity();
+  double greatest = 0.0;
+  for (const noise::AllanCurve* curve : curves)
+    for (const noise::AllanPoint& point : *curve) {
+      if (!(point.allan.value > 0.0)) continue;
+      least = std::min(least, point.allan.value);
+      greatest = std::max(greatest, point.allan.value);
+    }
+  if (greatest > 0.0) plot.y.range.emplace(in_unit(least, unit) / 3.0, in_unit(greatest, unit) * 2.0);
+  return plot;
+}
+
 report::Panel allan_panel(const CalibratedAxis& axis) {
   const char* unit = sheet_units(axis.axis.sensor).signal;
   const noise::AxisCalibration& r = axis.result;
@@ -147,16 +156,11 @@ report::Panel allan_panel(const CalibratedAxis& axis) {
     panel.caption +=
         " A process is faster than the samples: the model's curve, of continuous time, and the median of the realisations part "
         "at short averaging times.";
-  report::Plot& plot = allan_plot(panel, axis, unit);
+  std::vector<const noise::AllanCurve*> curves;
+  for (const noise::AllanCurve& curve : r.curves) curves.push_back(&curve);
+  report::Plot& plot = panel.plots.emplace_back(allan_plot(curves, unit));
   if (!r.band.tau.empty()) {
-    report::Series series;
-    series.x = series.band.emplace().x = r.band.tau;
-    for (std::size_t i = 0; i < r.band.tau.size(); ++i) {
-      series.y.push_back(in_unit(r.band.median[i], unit));
-      series.band->lower.push_back(in_unit(r.band.lower[i], unit));
-      series.band->upper.push_back(in_unit(r.band.upper[i], unit));
-    }
-    report::Line& line = report::add_line(plot, "realisations, median", std::move(series), report::Tone::kMuted);
+    report::Line& line = report::add_line(plot, "realisations, median", band_series(r.band, unit), report::Tone::kMuted);
     line.band_label = "95 % of all curves";
     line.width_px = 1.0;
   }
@@ -167,8 +171,8 @@ report::Panel allan_panel(const CalibratedAxis& axis) {
                                report::Tone::kPpp};
   for (std::size_t i = 0; i < r.curves.size(); ++i) {
     report::Line& line =
-        report::add_line(plot, several ? record_name(axis.signals[i]) : "record", allan_series(r.curves[i], unit, i == 0),
-                         i == 0 ? tone_of(axis) : kOthers[(i - 1) % kOthers.size()]);
+        report::add_line(plot, several ? record_name(axis.signals[i].source) : "record",
+                         allan_series(r.curves[i], unit, i == 0), i == 0 ? tone_of(axis) : kOthers[(i - 1) % kOthers.size()]);
     if (i == 0) line.band_label = "95 %";
     line.width_px = i == 0 ? 1.8 : 1.2;
   }
@@ -188,13 +192,12 @@ report::Section sensor_section(const CalibrationResult& result, noise::Sensor se
   panel.id = section.id + "-allan";
   panel.title = fmt::format("Allan deviation of {}", gyro ? "the gyros" : "the accelerometers");
   panel.caption = "Bands are 95 % intervals of each point by chi-square. The axes of one triad should look alike.";
-  report::Plot& plot = allan_plot(panel, *axes.front(), unit);
-  plot.y.range.reset();
+  report::Plot& plot = panel.plots.emplace_back(allan_plot({}, unit));
   for (const CalibratedAxis* axis : axes)
     for (std::size_t i = 0; i < axis->result.curves.size(); ++i) {
       const bool several = axis->result.curves.size() > 1;
-      const std::string label =
-          several ? fmt::format("{}, {}", axis->axis.axis_name(), record_name(axis->signals[i])) : axis->axis.axis_name();
+      const std::string label = several ? fmt::format("{}, {}", axis->axis.axis_name(), record_name(axis->signals[i].source))
+                                        : axis->axis.axis_name();
       report::Line& line = report::add_line(plot, label, allan_series(axis->result.curves[i], unit, !several), tone_of(*axis));
       line.width_px = several ? 1.2 : 1.8;
       if (!several) line.band_label = "95 %";

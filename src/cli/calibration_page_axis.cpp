@@ -166,12 +166,14 @@ report::Section axis_section(const CalibrationConfig& config, const CalibratedAx
   section.tables.push_back(parameter_table(axis));
   if (auto table = combination_table(axis)) section.tables.push_back(std::move(*table));
   section.tables.push_back(candidate_table(axis));
+  if (auto table = tests_table(axis)) section.tables.push_back(std::move(*table));
   section.panels.push_back(allan_panel(axis));
   add_restitution(axis, config.common.seed, section);
   const auto add = [&](std::optional<report::Panel> panel) {
     if (panel) section.panels.push_back(std::move(*panel));
   };
   add(components_panel(axis));
+  add(tests_panel(axis));
   add(records_panel(axis));
   add(whiteness_panel(axis));
   add(search_panel(axis));
@@ -186,8 +188,8 @@ report::Tone tone_of(const CalibratedAxis& axis) {
   return kComponentTones[static_cast<std::size_t>(axis.axis.axis)];
 }
 
-std::string record_name(const noise::StaticSignal& signal) {
-  std::string name = std::filesystem::path(signal.source).filename().string();
+std::string record_name(const std::string& source) {
+  std::string name = std::filesystem::path(source).filename().string();
   return name.substr(0, name.find('.', 1));
 }
 

@@ -23,6 +23,9 @@ void add_restitution(const CalibratedAxis& axis, std::uint64_t seed, report::Sec
 [[nodiscard]] std::optional<report::Panel> components_panel(const CalibratedAxis& axis);
 [[nodiscard]] std::optional<report::Panel> search_panel(const CalibratedAxis& axis);
 [[nodiscard]] std::optional<report::Panel> whiteness_panel(const CalibratedAxis& axis);
+/// The records that the estimate was held against, with its band for each.
+[[nodiscard]] std::optional<report::Panel> tests_panel(const CalibratedAxis& axis);
+[[nodiscard]] std::optional<report::Table> tests_table(const CalibratedAxis& axis);
 /// Estimates of each record alone, where there are several.
 [[nodiscard]] std::optional<report::Panel> records_panel(const CalibratedAxis& axis);
 
@@ -37,12 +40,16 @@ void add_restitution(const CalibratedAxis& axis, std::uint64_t seed, report::Sec
 /// Colour of x, y or z.
 [[nodiscard]] report::Tone tone_of(const CalibratedAxis& axis);
 /// Name of a record for legends: its file without folder and extensions.
-[[nodiscard]] std::string record_name(const noise::StaticSignal& signal);
+[[nodiscard]] std::string record_name(const std::string& source);
 /// "12 s", "3.4 h", "21 d"
 [[nodiscard]] std::string duration_text(double seconds);
 /// A number with three significant digits, with a power of ten where it is far from 1.
 [[nodiscard]] std::string figure(double value);
 /// A record's Allan deviation with its 95 % band, in a unit.
 [[nodiscard]] report::Series allan_series(const noise::AllanCurve& curve, const char* unit, bool band);
+/// The median of realisations with the band of 95 % of all curves.
+[[nodiscard]] report::Series band_series(const noise::CurveBand& band, const char* unit);
+/// An empty plot of Allan deviations, with the view on these curves: parts of a model go far below.
+[[nodiscard]] report::Plot allan_plot(const std::vector<const noise::AllanCurve*>& curves, const char* unit);
 
 }  // namespace coast::cli

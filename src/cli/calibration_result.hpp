@@ -25,16 +25,24 @@ struct OwnEstimate {
   std::vector<double> sd;  ///< of each u, Cramer-Rao; infinite: nothing is known
 };
 
+/// A record that the estimate was held against.
+struct TestedRecord {
+  std::string source;
+  noise::RecordTest test;
+};
+
 struct CalibratedAxis {
   SensorAxis axis;
-  std::vector<noise::StaticSignal> signals;  ///< of each record
+  std::vector<noise::StaticSignal> signals;  ///< of each record that was estimated from
   noise::AxisCalibration result;
   std::vector<OwnEstimate> own;  ///< of each record, where there are several
+  std::vector<TestedRecord> tests;
 };
 
 struct CalibrationResult {
   double interval = 0.0;  ///< s
   std::vector<ReadRecord> records;
+  std::vector<ReadRecord> tested_on;
   record::Events events;  ///< of the readers
   std::vector<CalibratedAxis> axes;
 

@@ -40,6 +40,10 @@ std::string calibration_text(const CalibrationResult& result) {
                           r.outliers_excluded ? "left out" : "kept");
     if (r.common_parameters_p)
       text += fmt::format("  one set of parameters for all records: p = {:.2g}\n", *r.common_parameters_p);
+    for (const TestedRecord& tested : axis.tests)
+      text += fmt::format("  on {}: variance of innovations {:.3f}, Allan curve {} the band\n",
+                          std::filesystem::path(tested.source).filename().string(), tested.test.innovation_variance,
+                          tested.test.band.inside ? "inside" : "OUTSIDE");
     for (const std::string& remark : r.remarks) text += fmt::format("  {}\n", remark);
   }
   return text;

@@ -83,21 +83,11 @@ void bootstrap_intervals(const Likelihood& likelihood, const Fit& fit, const Cal
   }
 }
 
-void check(const StaticSignal& record) {
-  constexpr std::size_t kFewestSamples = 100;
-  if (record.values.size() < kFewestSamples)
-    throw NumericalError("too few samples", "",
-                         fmt::format("{} has {}, at least {} are needed", record.source, record.values.size(), kFewestSamples));
-  const auto [lowest, highest] = std::ranges::minmax(record.values);
-  if (!(highest > lowest))
-    throw NumericalError("the signal is constant", "", fmt::format("{}: every sample is {:g}", record.source, lowest));
-}
-
 }  // namespace
 
 AxisCalibration calibrate(const std::vector<StaticSignal>& given, const CalibrationOptions& options) {
   const auto began = std::chrono::steady_clock::now();
-  for (const StaticSignal& record : given) check(record);
+  for (const StaticSignal& record : given) check_record(record);
   AxisCalibration result;
   std::vector<StaticSignal> records = given;
   for (const StaticSignal& record : records) result.curves.push_back(allan_curve(record));

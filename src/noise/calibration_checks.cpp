@@ -9,6 +9,7 @@
 #include <numeric>
 
 #include "coast/noise/chi_square.hpp"
+#include "coast/record/error.hpp"
 
 namespace coast::noise {
 
@@ -31,6 +32,16 @@ double normal_bound(double p) {
 }
 
 }  // namespace
+
+void check_record(const StaticSignal& record) {
+  constexpr std::size_t kFewestSamples = 100;
+  if (record.values.size() < kFewestSamples)
+    throw NumericalError("too few samples", "",
+                         fmt::format("{} has {}, at least {} are needed", record.source, record.values.size(), kFewestSamples));
+  const auto [lowest, highest] = std::ranges::minmax(record.values);
+  if (!(highest > lowest))
+    throw NumericalError("the signal is constant", "", fmt::format("{}: every sample is {:g}", record.source, lowest));
+}
 
 Whiteness whiteness_of(const std::vector<double>& standardised, int fitted_parameters) {
   constexpr std::size_t kLags = 40;

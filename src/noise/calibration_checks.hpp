@@ -1,9 +1,12 @@
 #pragma once
-// What is said of an estimate once it stands. Private to the room.
+// What is asked of a record, and what is said of an estimate once it stands. Private to the room.
 
 #include "coast/noise/calibration.hpp"
 
 namespace coast::noise {
+
+/// @throws NumericalError  too few samples (100), or all alike
+void check_record(const StaticSignal& record);
 
 [[nodiscard]] Whiteness whiteness_of(const std::vector<double>& standardised, int fitted_parameters);
 /// Innovations beyond what one record in a hundred would show.

@@ -71,9 +71,10 @@ const fs::path& simulated() {
   static const fs::path made = [] {
     write(folder.path() / "one.csv", simulated_csv(5));
     write(folder.path() / "two.csv", simulated_csv(6));
+    write(folder.path() / "three.csv", simulated_csv(7));
     write(folder.path() / "calibration.yaml",
           "schema: coast.calibration_run/1\nsensor: two runs of it\nmost_gauss_markov: 0\nrealisations: 40\n"
-          "records:\n  - {file: one.csv}\n  - {file: two.csv}\n"
+          "records:\n  - {file: one.csv}\n  - {file: two.csv}\ntested_on:\n  - {file: three.csv}\n"
           "turn_on_bias: {accel: {sigma: 3, unit: mg}}\n");
     const Outcome outcome = run(fmt::format("calibrate '{}' --out '{}'", (folder.path() / "calibration.yaml").string(),
                                             (folder.path() / "out").string()),
@@ -89,6 +90,7 @@ TEST(Calibrate, FindsTheSensorThatWasSimulated) {
   const json result = calibrated(simulated() / "out");
   EXPECT_NEAR(result["rate_hz"].get<double>(), kRate, 1e-6);
   ASSERT_EQ(result["records"].size(), 2U);
+  ASSERT_EQ(result["tested_on"].size(), 1U);
   EXPECT_EQ(result["records"][0]["holes"], 1);
   // Seven samples are missing, and the one behind them, which carried the bridge, is left out.
   EXPECT_EQ(result["records"][0]["samples"], kSamples - 8);
@@ -108,6 +110,22 @@ TEST(Calibrate, FindsTheSensorThatWasSimulated) {
   const json& sheet = result["axes"][3]["parameters"][0]["data_sheet"];
   EXPECT_EQ(sheet["unit"], "m/s/sqrt(h)");
   EXPECT_NEAR(sheet["value"].get<double>(), kAccelDensity * 60.0, 0.02 * kAccelDensity * 60.0);
+}
+
+// The third record is of the same sensor: the mean of 12 thousand squared normals is 1 within 0.013, and the estimate from
+// twice as many adds 0.009; five of both together.
+TEST(Calibrate, HoldsTheEstimateAgainstAnotherRecord) {
+  const json result = calibrated(simulated() / "out");
+  for (const json& axis : result["axes"]) {
+    ASSERT_EQ(axis["tests"].size(), 1U);
+    const json& test = axis["tests"][0];
+    EXPECT_NE(test["source"].get<std::string>().find("three.csv"), std::string::npos);
+    EXPECT_NEAR(test["innovation_variance"].get<double>(), 1.0, 5.0 * 0.016);
+    EXPECT_GT(test["innovations"]["p_value"].get<double>(), 1e-5);
+    EXPECT_NEAR(test["log_likelihood_per_sample"].get<double>(),
+                axis["log_likelihood"].get<double>() / axis["samples"].get<double>(), 5.0 * 0.016);
+    EXPECT_EQ(test["allan_band"]["tau_s"].size(), test["allan"]["tau_s"].size());
+  }
 }
 
 TEST(Calibrate, ErrorModelSaysWhereItsValuesComeFrom) {

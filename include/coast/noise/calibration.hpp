@@ -105,6 +105,15 @@ struct AxisCalibration {
   [[nodiscard]] const Candidate& best() const { return candidates.at(chosen); }
 };
 
+/// What a record that was not estimated from says of an estimate. Only its level and drift are fitted to it.
+struct RecordTest {
+  double log_likelihood_per_sample = 0.0;
+  double innovation_variance = 0.0;  ///< of the standardised innovations: 1 where the estimate holds
+  Whiteness whiteness;
+  AllanCurve curve;
+  CurveBand band;  ///< of realisations as long as this record
+};
+
 /// A record drawn from a sum of processes, without level and drift. The same bytes for the same seed.
 [[nodiscard]] StaticSignal realisation(const SumModel& model, const std::vector<double>& u, double interval,
                                        std::uint64_t length, std::uint64_t seed);
@@ -126,5 +135,10 @@ struct SmoothedComponents {
 /// @param records  of the same axis of the same sensor, at the same interval
 /// @throws NumericalError  too few samples (100), or no candidate has a finite likelihood
 [[nodiscard]] AxisCalibration calibrate(const std::vector<StaticSignal>& records, const CalibrationOptions& options);
+
+/// @param record  of the sensor that `model` at `u` was estimated for, at the same interval
+/// @throws NumericalError  too few samples (100), or all alike
+[[nodiscard]] RecordTest test_on(const StaticSignal& record, const SumModel& model, const std::vector<double>& u,
+                                 const CalibrationOptions& options);
 
 }  // namespace coast::noise
