@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <array>
 #include <cmath>
 #include <nlohmann/json.hpp>
 
@@ -50,10 +51,15 @@ Json candidate_json(const noise::Candidate& c, bool chosen) {
   return j;
 }
 
-Json mean_json(const noise::MeanEstimate& mean) {
+Json mean_json(const noise::MeanEstimate& mean, const std::vector<noise::ProfileInterval>& intervals) {
+  constexpr std::array kNames{"level", "drift_per_s"};
   Json j = Json::object();
-  if (mean.value.size() > 0) j["level"] = {{"value", mean.value(0)}, {"sd", std::sqrt(mean.covariance(0, 0))}};
-  if (mean.value.size() > 1) j["drift_per_s"] = {{"value", mean.value(1)}, {"sd", std::sqrt(mean.covariance(1, 1))}};
+  for (Eigen::Index k = 0; k < mean.value.size(); ++k) {
+    const auto at = static_cast<std::size_t>(k);
+    Json& of = j[kNames[at]] = {{"value", mean.value(k)}, {"sd", std::sqrt(mean.covariance(k, k))}};
+    put(of, "lower_95", intervals[at].lower);
+    put(of, "upper_95", intervals[at].upper);
+  }
   return j;
 }
 
@@ -155,7 +161,7 @@ Json axis_json(const CalibratedAxis& axis) {
   j["parameters"] = Json::array();
   for (std::size_t i = 0; i < r.parameters.size(); ++i) j["parameters"].push_back(parameter_json(axis, i));
   j["means"] = Json::array();
-  for (const noise::MeanEstimate& mean : r.means) j["means"].push_back(mean_json(mean));
+  for (std::size_t i = 0; i < r.means.size(); ++i) j["means"].push_back(mean_json(r.means[i], r.mean_intervals[i]));
   j["identifiable_combinations"] = Json::array();
   for (const noise::Combination& c : r.combinations) {
     j["identifiable_combinations"].push_back({{"combination", c.text}});

@@ -79,6 +79,30 @@ report::Table parameter_table(const CalibratedAxis& axis) {
   return table;
 }
 
+report::Table means_table(const CalibratedAxis& axis) {
+  const char* unit = sheet_units(axis.axis.sensor).signal;
+  report::Table table;
+  table.id = id_of(axis) + "-means";
+  table.title = "Level and drift";
+  table.caption = "Level: at the middle of the record. Intervals: profile likelihood, with the processes free to follow.";
+  table.columns = {{"record", "", false}, {"coefficient", "", false}, {"value", ""},
+                   {"unit", "", false},   {"95 % from", ""},          {"to", ""}};
+  const auto value = [unit](const std::optional<double>& si, double per) {
+    return si ? figure(in_unit(*si * per, unit)) : std::string("not bounded");
+  };
+  for (std::size_t r = 0; r < axis.result.means.size(); ++r) {
+    const noise::MeanEstimate& mean = axis.result.means[r];
+    for (Eigen::Index k = 0; k < mean.value.size(); ++k) {
+      const double per = k == 0 ? 1.0 : 3600.0;
+      const noise::ProfileInterval& interval = axis.result.mean_intervals[r][static_cast<std::size_t>(k)];
+      table.rows.push_back(
+          cells({record_name(axis.signals[r].source), k == 0 ? "level" : "drift", value(mean.value(k), per),
+                 k == 0 ? unit : fmt::format("{} per hour", unit), value(interval.lower, per), value(interval.upper, per)}));
+    }
+  }
+  return table;
+}
+
 namespace {
 
 /// The largest log-likelihood and the smallest criteria of the candidates that are compared on the same samples.
@@ -164,6 +188,7 @@ report::Section axis_section(const CalibrationConfig& config, const CalibratedAx
   if (!r.outliers.empty()) section.notes.push_back(outlier_note(r));
   if (auto note = search_note(r)) section.notes.push_back(std::move(*note));
   section.tables.push_back(parameter_table(axis));
+  section.tables.push_back(means_table(axis));
   if (auto table = combination_table(axis)) section.tables.push_back(std::move(*table));
   section.tables.push_back(candidate_table(axis));
   if (auto table = tests_table(axis)) section.tables.push_back(std::move(*table));

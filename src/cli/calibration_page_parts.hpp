@@ -30,6 +30,7 @@ void add_restitution(const CalibratedAxis& axis, std::uint64_t seed, report::Sec
 [[nodiscard]] std::optional<report::Panel> records_panel(const CalibratedAxis& axis);
 
 [[nodiscard]] report::Table parameter_table(const CalibratedAxis& axis);
+[[nodiscard]] report::Table means_table(const CalibratedAxis& axis);
 [[nodiscard]] report::Table candidate_table(const CalibratedAxis& axis);
 [[nodiscard]] std::optional<report::Table> combination_table(const CalibratedAxis& axis);
 

@@ -118,6 +118,7 @@ AxisCalibration calibrate(const std::vector<StaticSignal>& given, const Calibrat
                        fit_curve(detrended_curve(records.front()), best.model, likelihood.scale(), CurveFit::kWaveletMoments),
                        {.iterations = kEmPasses});
   result.means = likelihood.value(best.fit.u).means;
+  result.mean_intervals = mean_intervals(likelihood, best.fit);
   const Eigen::MatrixXd information = record_information(likelihood, best.fit.u);
   double duration = 0.0;
   for (const StaticSignal& record : records) duration += record.duration();

@@ -120,13 +120,13 @@ StudyFit fit_run(const EstimatorStudy& study, const StudiedEstimator& estimator,
   fit.u = in_order(estimator.model, fit.u);
   const LikelihoodValue at = likelihood.value(fit.u);
   result.log_likelihood = fit.log_likelihood = at.log_likelihood;
-  if (!at.means.empty())
-    for (Eigen::Index i = 0; i < at.means.front().value.size(); ++i) {
-      result.mean.push_back(at.means.front().value(i));
-      result.mean_sd.push_back(std::sqrt(at.means.front().covariance(i, i)));
-    }
+  if (!at.means.empty()) result.mean.assign(at.means.front().value.begin(), at.means.front().value.end());
   result.zero = zeros_of(likelihood, fit.u, fit.log_likelihood);
-  if (estimator.intervals) result.intervals = profile_intervals(likelihood, fit);
+  if (estimator.intervals) {
+    result.intervals = profile_intervals(likelihood, fit);
+    const std::vector<ProfileInterval> of_mean = mean_intervals(likelihood, fit).front();
+    result.intervals.insert(result.intervals.end(), of_mean.begin(), of_mean.end());
+  }
   result.u = std::move(fit.u);
   return result;
 }

@@ -93,11 +93,7 @@ ParameterSummary of_mean(const EstimatorStudy& study, const StudiedEstimator& es
   const double truth = which == 0 ? study.truth.level + study.truth.slope * middle : study.truth.slope;
   summary.truth = truth;
   spread(values_of(estimator, fits, estimator.model.parameters() + which), summary);
-  Coverage coverage;
-  coverage.intervals = fits.size();
-  for (const StudyFit& fit : fits)
-    if (std::abs(fit.mean[which] - truth) <= kRoot95 * fit.mean_sd[which]) ++coverage.inside;
-  summary.coverage = coverage;
+  if (estimator.intervals) summary.coverage = coverage_of(fits, estimator.model.parameters() + which, truth);
   return summary;
 }
 

@@ -4,14 +4,13 @@
 
 #include "coast/noise/uncertainty.hpp"
 #include "polish.hpp"
+#include "profile_search.hpp"
 #include "short_likelihood.hpp"
 #include "spectrum.hpp"
 
 namespace coast::noise {
 
 namespace {
-
-constexpr double kProfileRoot95 = 1.959963984540054;  // square root of the 95 % quantile of chi2(1)
 
 /// A likelihood that is followed, and its maximum.
 class Followed {
@@ -83,53 +82,6 @@ Eigen::VectorXd tangent_of(const Eigen::MatrixXd& information, std::size_t which
   return tangent;
 }
 
-/// Where the root is 1.96, by what was found at up to two distances: the root is a straight line where the likelihood is a
-/// parabola, and bends a little where it is not: r = a d + b d^2.
-class RootCurve {
- public:
-  double next(double distance, double root) {
-    const double slope = std::max(root, 0.1) / distance;
-    const double bend = last_ > 0.0 && last_ != distance ? (slope - slope_) / (distance - last_) : 0.0;
-    const double start = slope - bend * distance;
-    last_ = distance;
-    slope_ = slope;
-    const double square = start * start + 4.0 * bend * kProfileRoot95;
-    const double bent = square >= 0.0 ? 2.0 * kProfileRoot95 / (start + std::sqrt(square)) : -1.0;
-    return bent > 0.0 && std::isfinite(bent) ? bent : kProfileRoot95 / slope;
-  }
-
- private:
-  double last_ = 0.0;
-  double slope_ = 0.0;  ///< r/d there
-};
-
-/// The distance at which the root is 1.96, kept between what is known to be too near and too far.
-std::optional<double> crossing(Profile profile, double guess, double farthest) {
-  constexpr int kSteps = 25;
-  constexpr double kClose = 0.01;
-  RootCurve curve;
-  double near = 0.0;
-  std::optional<double> far;
-  double distance = std::min(guess, farthest);
-  for (int step = 0; step < kSteps; ++step) {
-    const double root = profile.root_at(distance);
-    if (std::abs(root - kProfileRoot95) < kClose) return distance;
-    if (root < kProfileRoot95) {
-      if (distance >= farthest) return {};
-      near = distance;
-    } else {
-      far = distance;
-    }
-    const double expected = curve.next(distance, root);
-    if (!far)
-      distance = std::min({std::max(expected, 1.1 * distance), 3.0 * distance, farthest});
-    else
-      distance = expected > near && expected < *far ? expected : 0.5 * (near + *far);
-    if (far && *far - near < 1e-3 * *far) return distance;
-  }
-  return far ? std::optional(distance) : std::nullopt;
-}
-
 /// About `at`, as wide as it is about the maximum of what is followed.
 ProfileInterval interval_about(double at, const Followed& likelihood, std::size_t which, double sd) {
   const double top = likelihood.top().u[which];
@@ -137,9 +89,11 @@ ProfileInterval interval_about(double at, const Followed& likelihood, std::size_
   const double guess = std::isfinite(sd) ? std::clamp(kProfileRoot95 * sd, 0.01, 2.0) : 1.0;
   const Eigen::VectorXd tangent = tangent_of(likelihood.information(), which);
   ProfileInterval interval;
-  if (const auto below = crossing(Profile(likelihood, which, -1.0, tangent), guess, top - range.lower))
+  Profile down(likelihood, which, -1.0, tangent);
+  Profile up(likelihood, which, 1.0, tangent);
+  if (const auto below = crossing([&](double d) { return down.root_at(d); }, guess, top - range.lower))
     interval.lower = at - *below;
-  if (const auto above = crossing(Profile(likelihood, which, 1.0, tangent), guess, range.upper - top))
+  if (const auto above = crossing([&](double d) { return up.root_at(d); }, guess, range.upper - top))
     interval.upper = at + *above;
   return interval;
 }

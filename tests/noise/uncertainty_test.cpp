@@ -122,6 +122,73 @@ TEST(ProfileInterval, IsOpenWhereTheRecordSaysNothing) {
   EXPECT_GT(*walk.upper, std::log(1e-10));
 }
 
+TEST(MeanInterval, OfWhiteNoiseIsStudents) {
+  constexpr std::size_t kSamples = 12;
+  const SumModel model = sum({"white_noise"}, Mean::kLevel);
+  const StaticSignal record = StaticSignal::regular(test::simulate_block(model.block(logs({4.0}), 1.0), kSamples, 3), 1.0);
+  const Likelihood likelihood({record}, model);
+  const ProfileInterval interval = mean_intervals(likelihood, fit_maximum_likelihood(likelihood, logs({1.0})))[0][0];
+  ASSERT_TRUE(interval.lower && interval.upper);
+  double mean = 0.0;
+  for (const double y : record.values) mean += y / kSamples;
+  double squares = 0.0;
+  for (const double y : record.values) squares += (y - mean) * (y - mean);
+  // 2 (max - l) = (n - 1) log(1 + n d^2 / squares); its root is met to 0.01 in the root of 1.96.
+  for (const double at : {*interval.lower, *interval.upper}) {
+    const double d = at - mean;
+    EXPECT_NEAR(std::sqrt((kSamples - 1.0) * std::log1p(kSamples * d * d / squares)), 1.96, 0.011);
+  }
+}
+
+/// The restricted log-likelihood of a Gauss-Markov process in white noise with the level held, by dense matrices, maximised
+/// over a grid of beta and both variances about the estimate.
+double dense_profile(const std::vector<double>& values, double level, const std::vector<double>& about,
+                     const std::vector<Interval>& ranges) {
+  const auto n = static_cast<Eigen::Index>(values.size());
+  const Eigen::VectorXd r = Eigen::Map<const Eigen::VectorXd>(values.data(), n).array() - level;
+  constexpr int kHalf = 12;
+  constexpr double kStep = 0.3;  // of logarithms: a parabola through the best three leaves less than 0.01
+  const auto value = [&](double noise, double beta, double variance) {
+    Eigen::MatrixXd V(n, n);
+    for (Eigen::Index i = 0; i < n; ++i)
+      for (Eigen::Index j = 0; j < n; ++j)
+        V(i, j) = variance * std::exp(-beta * std::abs(static_cast<double>(i - j))) + (i == j ? noise : 0.0);
+    const Eigen::LLT<Eigen::MatrixXd> llt(V);
+    const Eigen::VectorXd ones = Eigen::VectorXd::Ones(n);
+    const double information = ones.dot(llt.solve(ones));
+    const double log_determinant = 2.0 * llt.matrixLLT().diagonal().array().log().sum();
+    return -0.5 * (log_determinant + r.dot(llt.solve(r)) + std::log(information));
+  };
+  double best = -1e300;
+  for (int i = -3; i <= 3; ++i)
+    for (int j = -kHalf; j <= kHalf; ++j)
+      for (int k = -kHalf; k <= kHalf; ++k) {
+        const auto at = [&](std::size_t p, double off) {
+          return std::exp(std::clamp(about[p] + off, ranges[p].lower, ranges[p].upper));
+        };
+        best = std::max(best, value(at(0, 0.5 * kStep * i), at(1, kStep * j), at(2, kStep * k)));
+      }
+  return best;
+}
+
+// A grid misses the top by at most the curvature over half a step: information of order one in slow directions (0.15^2/2) and
+// of n/2 in that of white noise (0.075^2/2 * 20): 0.1 at both ends of the comparison.
+TEST(MeanInterval, IsWhereDenseMatricesHaveIt) {
+  const SumModel model = sum({"white_noise", "gauss_markov"}, Mean::kLevel);
+  const StaticSignal record = StaticSignal::regular(test::simulate_block(model.block(logs({0.05, 0.1, 1.0}), 1.0), 40, 8), 1.0);
+  const Likelihood likelihood({record}, model);
+  const Fit fit = fit_maximum_likelihood(likelihood, logs({0.05, 0.1, 1.0}));
+  const MeanEstimate mean = likelihood.value(fit.u).means.front();
+  const ProfileInterval interval = mean_intervals(likelihood, fit)[0][0];
+  ASSERT_TRUE(interval.lower && interval.upper);
+  const double normal = 1.96 * std::sqrt(mean.covariance(0, 0));
+  EXPECT_GT(*interval.upper - *interval.lower, 2.0 * normal);  // badly known processes make it wider
+  const std::vector<Interval> ranges = model.ranges(likelihood.scale());
+  const double top = dense_profile(record.values, mean.value(0), fit.u, ranges);
+  EXPECT_NEAR(top - dense_profile(record.values, *interval.lower, fit.u, ranges), 1.92, 0.12);
+  EXPECT_NEAR(top - dense_profile(record.values, *interval.upper, fit.u, ranges), 1.92, 0.12);
+}
+
 TEST(ChiBarSquare, IsHalfAChiSquare) {
   EXPECT_NEAR(chi_bar_square_survival(2.705543454), 0.05, 1e-9);  // the 90 % quantile of chi2(1), standard tables
   EXPECT_EQ(chi_bar_square_survival(0.0), 1.0);

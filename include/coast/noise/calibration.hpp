@@ -90,6 +90,7 @@ struct AxisCalibration {
   std::size_t chosen = 0;
   std::optional<Fit> em;            ///< the first passes of EM towards the chosen sum, for comparison; of up to 6 states
   std::vector<MeanEstimate> means;  ///< of each record
+  std::vector<std::vector<ProfileInterval>> mean_intervals;  ///< [record][coefficient]
   std::vector<ParameterEstimate> parameters;
   std::vector<Combination> combinations;  ///< from the best known to the least
   std::vector<std::string> remarks;       ///< what this record cannot tell

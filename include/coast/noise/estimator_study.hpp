@@ -60,7 +60,6 @@ struct EstimatorStudy {
 struct StudyFit {
   std::vector<double> u;                   ///< processes of one kind in ascending order of their first parameter
   std::vector<double> mean;                ///< none, level at the middle, or level and slope per second
-  std::vector<double> mean_sd;             ///< as generalised least squares states it at the estimate
   std::vector<bool> zero;                  ///< a variance whose absence costs less than 1e-3 of log-likelihood
   double log_likelihood = 0.0;             ///< also where the estimator does not look at it
   std::vector<double> trace;               ///< log-likelihood by iteration; of the first run
@@ -68,7 +67,7 @@ struct StudyFit {
   int passes = 0;                          ///< over the record
   bool converged = false;                  ///< for EM: within its iterations
   double seconds = 0.0;                    ///< without intervals
-  std::vector<ProfileInterval> intervals;  ///< one per parameter where asked for
+  std::vector<ProfileInterval> intervals;  ///< where asked for: one per parameter, then of the mean
 };
 
 /// A record and realisations of its estimate.
