@@ -127,6 +127,8 @@ AxisCalibration calibrate(const std::vector<StaticSignal>& given, const Calibrat
   if (options.bootstrap > 0) bootstrap_intervals(likelihood, best.fit, options, result.parameters);
   result.combinations = combinations_of(best.model, information);
   result.remarks = remarks_of(best.model, result.parameters, covariance, duration);
+  for (const ProcessPtr& process : best.model.processes(best.fit.u, {options.sensor, records.front().interval}))
+    if (const std::string words = process->in_words(); !words.empty()) result.remarks.push_back(words + ".");
   result.whiteness = whiteness_of(likelihood.standardised_innovations(best.fit.u, 0), static_cast<int>(best.fit.u.size()));
   result.own = fit_each(records, best);
   result.common_parameters_p = test_of_common_parameters(result.own, best);

@@ -193,6 +193,16 @@ TEST(Ar, KeepsItsDigitsNearAPoleOfOne) {
   EXPECT_NEAR(*process->allan_variance(m / kRate), expected, 1e-6 * expected);
 }
 
+TEST(Ar, SaysWhereItRings) {
+  // Poles 0.95 exp(+-0.3i) at 4 Hz: 0.3 * 4 / (2 pi) Hz and -log 0.95 * 4 / pi Hz; rms by Yule and Walker's closed form for
+  // order 2, sigma^2 (1 - a2) / ((1 + a2)((1 - a2)^2 - a1^2)).
+  const double a1 = 2.0 * 0.95 * std::cos(0.3);
+  const double a2 = -0.9025;
+  const double rms = kSigma * std::sqrt((1.0 - a2) / ((1.0 + a2) * ((1.0 - a2) * (1.0 - a2) - a1 * a1)));
+  EXPECT_EQ(ar({a1, a2})->in_words(), fmt::format("AR(2) rings at 0.191 Hz (0.0653 Hz wide), rms {:.3g} rad/s", rms));
+  EXPECT_EQ(ar({0.5, 0.1})->in_words(), "");
+}
+
 TEST(Ar, VarianceIsInterpolatedBetweenWholeSamples) {
   const auto process = ar({0.9});
   const double one = *process->allan_variance(1.0 / kRate), two = *process->allan_variance(2.0 / kRate);

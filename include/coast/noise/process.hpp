@@ -70,6 +70,8 @@ class Process {
   [[nodiscard]] virtual std::optional<double> allan_variance(double tau) const = 0;
   /// Hadamard variance, [signal]^2, as above.
   [[nodiscard]] virtual std::optional<double> hadamard_variance(double tau) const = 0;
+  /// What the values say to a person; empty where they speak for themselves.
+  [[nodiscard]] virtual std::string in_words() const { return {}; }
   /// The entry of an error-model file that makes this process again, in SI units.
   [[nodiscard]] virtual std::string yaml() const = 0;
 };

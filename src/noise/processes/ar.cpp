@@ -85,6 +85,19 @@ class Ar final : public Process {
   [[nodiscard]] std::optional<double> hadamard_variance(double tau) const override {
     return interpolated(tau, &Autoregression::hadamard_variance);
   }
+  /// Poles r exp(+-i w) with 0 > log r > -w/2: a band of half power about w/(2 pi dt), -log r/(pi dt) wide.
+  [[nodiscard]] std::string in_words() const override {
+    std::string bands;
+    for (const std::complex<double>& pole : Autoregression::poles(p_.coefficients)) {
+      const double decay = -std::log(std::abs(pole));
+      if (!(std::arg(pole) > 2.0 * decay)) continue;
+      bands += fmt::format("{} {:.4g} Hz ({:.3g} Hz wide)", bands.empty() ? "" : " and",
+                           std::arg(pole) * p_.rate_hz / (2.0 * std::numbers::pi), decay * p_.rate_hz / std::numbers::pi);
+    }
+    if (bands.empty()) return {};
+    return fmt::format("AR({}) rings at{}, rms {:.3g} {}", p_.coefficients.size(), bands,
+                       std::sqrt(static_cast<double>(series_.covariance()(0, 0))), unit_);
+  }
   [[nodiscard]] std::string yaml() const override {
     std::string list;
     for (const double a : p_.coefficients) list += fmt::format("{}{:.17g}", list.empty() ? "" : ", ", a);
