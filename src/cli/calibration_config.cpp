@@ -104,7 +104,7 @@ noise::CalibrationOptions options_from(const Node& root) {
   options.most_gauss_markov = count_within(root, "most_gauss_markov", options.most_gauss_markov, 0, 6);
   options.criterion = static_cast<noise::Criterion>(root.choice("criterion", {"bic", "aicc", "held_out"}, 0));
   options.held_out = root.flag("held_out", false);
-  options.exclude_outliers = root.choice("outliers", {"keep", "exclude"}, 0) == 1;
+  options.outliers = static_cast<noise::Outliers>(root.choice("outliers", {"where_they_matter", "keep", "exclude"}, 0));
   options.realisations = count_within(root, "realisations", options.realisations, 0, 100000);
   options.bootstrap = count_within(root, "bootstrap", 0, 0, 100000);
   options.seed = static_cast<std::uint64_t>(count_within(root, "seed", 1, 0, 2147483647));

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <nlohmann/json.hpp>
@@ -99,10 +100,11 @@ Json classical_json(const noise::AllanReading& reading, noise::Sensor sensor) {
 }
 
 Json outliers_json(const noise::AxisCalibration& result) {
-  Json j = {{"count", result.outliers.size()}, {"excluded", result.outliers_excluded}, {"first", Json::array()}};
+  const auto excluded = std::ranges::count_if(result.outliers, &noise::Outlier::excluded);
+  Json j = {{"count", result.outliers.size()}, {"excluded", excluded}, {"first", Json::array()}};
   for (const noise::Outlier& o : result.outliers) {
     if (j["first"].size() == kMostOutliers) break;
-    j["first"].push_back({{"record", o.record}, {"time_s", o.time_s}, {"sigmas", o.sigmas}});
+    j["first"].push_back({{"record", o.record}, {"time_s", o.time_s}, {"sigmas", o.sigmas}, {"excluded", o.excluded}});
   }
   return j;
 }

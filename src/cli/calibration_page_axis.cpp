@@ -26,8 +26,8 @@ report::Note outlier_note(const noise::AxisCalibration& r) {
           fmt::format("Standardised innovations beyond what one clean record in a hundred shows; the largest, {:.1f} sigma, at "
                       "{:.2f} s. They were {}.",
                       worst.sigmas, worst.time_s,
-                      r.outliers_excluded ? "left out and everything was estimated again"
-                                          : "kept; `outliers: exclude` leaves them out")};
+                      worst.excluded ? "left out and everything was estimated again"
+                                     : "kept, as they are too few to matter; `outliers: exclude` leaves them out")};
 }
 
 /// The two ways to the maximum have to agree.

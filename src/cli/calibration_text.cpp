@@ -37,7 +37,7 @@ std::string calibration_text(const CalibrationResult& result) {
       text += fmt::format("  Allan curve {} the 95 % band of the estimate\n", r.band.inside ? "inside" : "OUTSIDE");
     if (!r.outliers.empty())
       text += fmt::format("  {} outlier{} {}\n", r.outliers.size(), r.outliers.size() == 1 ? "" : "s",
-                          r.outliers_excluded ? "left out" : "kept");
+                          r.outliers.front().excluded ? "left out" : "kept");
     if (r.common_parameters_p)
       text += fmt::format("  one set of parameters for all records: p = {:.2g}\n", *r.common_parameters_p);
     for (const TestedRecord& tested : axis.tests)

@@ -29,6 +29,16 @@ std::vector<std::size_t> places_of(const std::vector<Outlier>& outliers, const S
   return places;
 }
 
+bool to_be_excluded(const std::vector<Outlier>& outliers, const std::vector<StaticSignal>& records, Outliers what) {
+  constexpr double kMatters = 0.01;  // of the sum of squares, whose expectation is the number of samples
+  if (what != Outliers::kWhereTheyMatter) return what == Outliers::kExclude;
+  double squares = 0.0;
+  for (const Outlier& outlier : outliers) squares += outlier.sigmas * outlier.sigmas;
+  double samples = 0.0;
+  for (const StaticSignal& record : records) samples += static_cast<double>(record.values.size());
+  return squares > kMatters * samples;
+}
+
 AllanCurve detrended_curve(const StaticSignal& signal) {
   return allan_curve(detrend(signal).signal);
 }
@@ -92,18 +102,24 @@ AxisCalibration calibrate(const std::vector<StaticSignal>& given, const Calibrat
   std::vector<StaticSignal> records = given;
   for (const StaticSignal& record : records) result.curves.push_back(allan_curve(record));
   result.reading = read_coefficients(result.curves.front());
-  result.candidates = fit_candidates(records, detrended_curve(records.front()), options);
-  result.chosen = choose(result.candidates, options.criterion);
-
-  result.outliers = outliers_of(Likelihood(records, result.best().model), result.best().fit.u);
-  if (options.exclude_outliers && !result.outliers.empty()) {
-    for (std::size_t r = 0; r < records.size(); ++r) {
-      records[r] = without(records[r], places_of(result.outliers, records[r], r));
-      result.curves[r] = allan_curve(records[r]);
-    }
-    result.outliers_excluded = true;
+  const auto search = [&] {
     result.candidates = fit_candidates(records, detrended_curve(records.front()), options);
     result.chosen = choose(result.candidates, options.criterion);
+  };
+  search();
+  // Each time a smaller sigma may bring others to light.
+  constexpr int kRounds = 3;
+  for (int round = 0;; ++round) {
+    std::vector<Outlier> found = outliers_of(Likelihood(records, result.best().model), result.best().fit.u);
+    const bool excluded = round < kRounds && !found.empty() && to_be_excluded(found, records, options.outliers);
+    for (Outlier& outlier : found) outlier.excluded = excluded;
+    result.outliers.insert(result.outliers.end(), found.begin(), found.end());
+    if (!excluded) break;
+    for (std::size_t r = 0; r < records.size(); ++r) {
+      records[r] = without(records[r], places_of(found, records[r], r));
+      result.curves[r] = allan_curve(records[r]);
+    }
+    search();
   }
 
   Candidate& best = result.candidates[result.chosen];

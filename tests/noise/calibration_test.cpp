@@ -50,20 +50,34 @@ TEST(Calibration, FindsTheSumTheValuesAndTheLevelOfASimulatedRecord) {
   }
 }
 
-TEST(Calibration, OutliersAreReportedAndMayBeLeftOut) {
+TEST(Calibration, OutliersAreReportedAndLeftOutWhereTheyMatter) {
   StaticSignal record = drifting(6, 4000);
   const double sigma = 0.5;
   for (const std::size_t i : {500U, 1700U, 3100U}) record.values[i] += 30.0 * sigma;
-  CalibrationOptions options{.processes = {"white_noise", "gauss_markov"}, .realisations = 0};
+  CalibrationOptions options{.processes = {"white_noise", "gauss_markov"}, .outliers = Outliers::kKeep, .realisations = 0};
   const AxisCalibration kept = calibrate({record}, options);
   ASSERT_EQ(kept.outliers.size(), 3U);
   EXPECT_EQ(kept.outliers[1].time_s, 1700.0);
-  options.exclude_outliers = true;
+  EXPECT_FALSE(kept.outliers[1].excluded);
+  options.outliers = Outliers::kWhereTheyMatter;
   const AxisCalibration cleaned = calibrate({record}, options);
-  EXPECT_TRUE(cleaned.outliers_excluded);
+  ASSERT_EQ(cleaned.outliers.size(), 3U);
+  EXPECT_TRUE(cleaned.outliers[1].excluded);
   // Three samples of (15)^2 in 4000 add 0.17 to a variance of 0.09; without them the estimate is that of a clean record.
   EXPECT_GT(kept.parameters[0].value, 0.15);
   EXPECT_NEAR(std::log(cleaned.parameters[0].value / 0.09), 0.0, 4.0 * cleaned.parameters[0].relative_bound);
+}
+
+// One sample of some five standard deviations is 25 in a sum of squares of 4000: told, and nothing is gained without it.
+TEST(Calibration, OutliersThatDoNotMatterAreKept) {
+  StaticSignal record = drifting(6, 4000);
+  record.values[1700] += 5.0 * 0.36;
+  CalibrationOptions options{.processes = {"white_noise", "gauss_markov"}, .realisations = 0};
+  const AxisCalibration result = calibrate({record}, options);
+  ASSERT_EQ(result.outliers.size(), 1U);
+  EXPECT_FALSE(result.outliers[0].excluded);
+  options.outliers = Outliers::kExclude;
+  EXPECT_TRUE(calibrate({record}, options).outliers.at(0).excluded);
 }
 
 TEST(Calibration, RecordsOfOneSensorShareTheirParametersAndOthersDoNot) {

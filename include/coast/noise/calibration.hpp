@@ -10,6 +10,9 @@
 namespace coast::noise {
 
 enum class Criterion { kBic, kAicc, kHeldOut };
+/// What becomes of outliers: left out, and all estimated again, where they are above a hundredth of the sum of squared
+/// innovations; kept in any case; left out in any case.
+enum class Outliers { kWhereTheyMatter, kKeep, kExclude };
 
 struct CalibrationOptions {
   Sensor sensor = Sensor::kGyro;
@@ -20,10 +23,10 @@ struct CalibrationOptions {
   Mean mean = Mean::kLevelAndDrift;  ///< with `processes`
   int most_gauss_markov = 3;
   Criterion criterion = Criterion::kBic;
-  bool exclude_outliers = false;  ///< estimate again without them
-  bool held_out = false;          ///< score every candidate on the half it was not fitted to; implied by its criterion
-  int realisations = 100;         ///< of the estimate, for the band of its Allan curve; 0: no band
-  int bootstrap = 0;              ///< parametric refits for intervals instead of the profile likelihood's
+  Outliers outliers = Outliers::kWhereTheyMatter;
+  bool held_out = false;   ///< score every candidate on the half it was not fitted to; implied by its criterion
+  int realisations = 100;  ///< of the estimate, for the band of its Allan curve; 0: no band
+  int bootstrap = 0;       ///< parametric refits for intervals instead of the profile likelihood's
   std::uint64_t seed = 1;
   std::function<void(const char* what, double fraction)> progress = {};
 };
@@ -65,6 +68,7 @@ struct Outlier {
   std::size_t record = 0;
   double time_s = 0.0;  ///< from the first sample
   double sigmas = 0.0;  ///< standardised innovation
+  bool excluded = false;
 };
 
 /// Portmanteau test of Ljung & Box (1978) on standardised innovations.
@@ -95,7 +99,6 @@ struct AxisCalibration {
   std::vector<Combination> combinations;  ///< from the best known to the least
   std::vector<std::string> remarks;       ///< what this record cannot tell
   std::vector<Outlier> outliers;
-  bool outliers_excluded = false;
   Whiteness whiteness;
   CurveBand band;
   /// Several records: test of one set of parameters for all against one for each.
