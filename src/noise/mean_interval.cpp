@@ -9,9 +9,10 @@ namespace coast::noise {
 
 namespace {
 
-constexpr double kEnough = 8000.0;   // block means: level and drift live at the slow end
-constexpr double kFarthest = 50.0;   // standard deviations; as good as not bounded
-constexpr double kTolerance = 5e-4;  // of log-likelihood: 3e-4 of the root
+constexpr double kManySamples = 40000.0;  // shorter records are followed as they are
+constexpr double kEnough = 8000.0;        // block means: level and drift live at the slow end
+constexpr double kFarthest = 50.0;        // standard deviations; as good as not bounded
+constexpr double kTolerance = 5e-4;       // of log-likelihood: 3e-4 of the root
 
 /// One coefficient of one record's mean.
 struct Place {
@@ -88,8 +89,9 @@ ProfileInterval interval_of(const Likelihood& likelihood, const Fit& top, Place 
 
 std::vector<std::vector<ProfileInterval>> mean_intervals(const Likelihood& likelihood, const Fit& fit) {
   const std::vector<MeanEstimate> means = likelihood.value(fit.u).means;
-  const std::optional<Likelihood> blocks = on_block_means(likelihood, kEnough);
   // A record shorter than a block would be missing among the blocks.
+  const std::optional<Likelihood> blocks =
+      likelihood.samples() > kManySamples ? on_block_means(likelihood, kEnough) : std::nullopt;
   const Likelihood& followed = blocks && blocks->records().size() == likelihood.records().size() ? *blocks : likelihood;
   Fit top;
   top.u = fit.u;

@@ -55,6 +55,25 @@ TEST(ErrorModel, WhiteDensitiesAndBiasVariancesAdd) {
   EXPECT_EQ(model.bias_sd(Sensor::kAccel, 2), 0.0);
 }
 
+// An AR(1) has the density (sigma / (1 - a))^2 dt at frequency zero (the sum of its autocovariances, times dt).
+TEST(ErrorModel, WhatForgetsFastIsWhiteForTheFilter) {
+  const auto model = model_of(R"(schema: coast.imu_error_model/1
+gyro:
+  x: [{process: ar, coefficients: [0.3], innovation_sigma: 0.01, unit: rad/s, rate_hz: 100}]
+  y: [{process: ar, coefficients: [1.9, -0.9925], innovation_sigma: 0.01, unit: rad/s, rate_hz: 100}]
+  z: [{process: ar, coefficients: [0.9999], innovation_sigma: 0.01, unit: rad/s, rate_hz: 100}]
+accel: {all: []}
+)");
+  EXPECT_NEAR(model.white_density(Sensor::kGyro, 0).value, std::pow(0.01 / 0.7, 2) / 100.0, 1e-15);
+  EXPECT_EQ(model.bias_sd(Sensor::kGyro, 0), 0.0);
+  // Rings at 4.9 Hz for 2.7 s: nothing that a filter of positions could follow.
+  EXPECT_NEAR(model.white_density(Sensor::kGyro, 1).value, std::pow(0.01 / 0.0925, 2) / 100.0, 1e-13);
+  EXPECT_EQ(model.bias_sd(Sensor::kGyro, 1), 0.0);
+  // Forgets in 100 s: that is a bias.
+  EXPECT_EQ(model.white_density(Sensor::kGyro, 2).value, 0.0);
+  EXPECT_NEAR(model.bias_sd(Sensor::kGyro, 2), 0.01 / std::sqrt(1.0 - 0.9999 * 0.9999), 1e-8);
+}
+
 TEST(ErrorModel, ScalesTheWhiteNoiseOfOneSensor) {
   const auto scaled = model_of(kModel).with_white_noise_scaled(Sensor::kGyro, 3.0);
   EXPECT_NEAR(std::sqrt(scaled.white_density(Sensor::kGyro, 2).value), 1.5e-4, 1e-17);

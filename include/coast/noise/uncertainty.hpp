@@ -40,8 +40,8 @@ struct ProfileInterval {
 [[nodiscard]] std::vector<ProfileInterval> profile_intervals(const Likelihood& likelihood, const Fit& fit);
 
 /// The same of level and drift, by the restricted likelihood with one of them held and the processes free to follow: where slow
-/// processes are known badly, this is wider than what generalised least squares states at the estimate. Of a record beyond 8000
-/// samples it is followed on block means.
+/// processes are known badly, this is wider than what generalised least squares states at the estimate. Of a record beyond
+/// 40 000 samples it is followed on block means.
 /// @return [record][coefficient], in the units of MeanEstimate
 [[nodiscard]] std::vector<std::vector<ProfileInterval>> mean_intervals(const Likelihood& likelihood, const Fit& fit);
 
