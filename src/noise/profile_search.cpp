@@ -31,6 +31,7 @@ class RootCurve {
 
 std::optional<double> crossing(const std::function<double(double)>& root_at, double guess, double farthest) {
   constexpr int kSteps = 25;
+  constexpr int kPatience = 5;  // then the root bends away from 1.96, and may never come to it
   constexpr double kClose = 0.01;
   RootCurve curve;
   double near = 0.0;
@@ -47,7 +48,8 @@ std::optional<double> crossing(const std::function<double(double)>& root_at, dou
     }
     const double expected = curve.next(distance, root);
     if (!far)
-      distance = std::min({std::max(expected, 1.1 * distance), 3.0 * distance, farthest});
+      distance = step < kPatience ? std::min({std::max(expected, 1.1 * distance), 3.0 * distance, farthest})
+                                  : std::min(3.0 * distance, farthest);
     else
       distance = expected > near && expected < *far ? expected : 0.5 * (near + *far);
     if (far && *far - near < 1e-3 * *far) return distance;

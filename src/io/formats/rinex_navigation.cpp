@@ -1,0 +1,325 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <tuple>
+
+#include "../rinex_lines.hpp"
+#include "../text.hpp"
+#include "coast/io/rinex.hpp"
+
+namespace coast::io {
+
+namespace {
+
+using record::KeplerEphemeris;
+using record::Satellite;
+using record::SatelliteSystem;
+using record::TabulatedEphemeris;
+
+constexpr std::size_t kWidth = 19;  // of a number
+constexpr std::size_t kLargestMessage = 31;
+
+/// The numbers of one message, in the order of the file, with its time.
+struct Message {
+  Satellite satellite;
+  geo::GpsTime t;
+  std::array<double, kLargestMessage> values{};  ///< blank: 0
+  std::size_t lines = 0;                         ///< behind the first
+};
+
+/// The instant with this second of the week that is nearest to another: the week of the file is not needed, which some programs
+/// write modulo 1024.
+geo::GpsTime nearest(geo::GpsTime to, double sow) {
+  constexpr double kHalfWeek = 302400.0;
+  const double off = std::remainder(sow - to.sow(), 2.0 * kHalfWeek);
+  return to + off;
+}
+
+class NavigationReader {
+ public:
+  explicit NavigationReader(const std::filesystem::path& file) : lines_(file) {}
+
+  record::NavigationRecording read() {
+    recording_.source = lines_.name();
+    read_header();
+    while (read_message()) {
+    }
+    sort_out();
+    if (recording_.kepler.empty() && recording_.tabulated.empty())
+      lines_.refuse("no ephemeris that can be used", "at least one");
+    report();
+    return std::move(recording_);
+  }
+
+ private:
+  void read_header();
+  void read_header_line(std::string_view line, std::string_view label);
+  [[nodiscard]] bool read_message();
+  [[nodiscard]] bool skip_to_next();
+  void read_ionosphere(std::string_view line);
+  [[nodiscard]] std::optional<Message> numbers_of(std::string_view line);
+  [[nodiscard]] std::optional<geo::GpsTime> time_of(std::string_view line, SatelliteSystem system) const;
+  void keep(const Message& m);
+  void keep_kepler(const Message& m);
+  void keep_tabulated(const Message& m);
+  void sort_out();
+  void report();
+
+  RinexLines lines_;
+  record::NavigationRecording recording_;
+  int major_ = 0;
+  char system_ = 'G';
+  long unknown_ = 0, impossible_ = 0, spoiled_ = 0, repeated_ = 0;
+};
+
+void NavigationReader::read_header() {
+  std::string_view line;
+  if (!lines_.next(line) || label_of(line) != "RINEX VERSION / TYPE")
+    lines_.refuse(in_quotes(line), "RINEX VERSION / TYPE in columns 61 to 80 of the first line", "This is no RINEX file.");
+  const auto version = number_field(line, 0, 9);
+  if (!version || *version < 2.0 || *version >= 5.0)
+    lines_.refuse(fmt::format("RINEX version {}", in_quotes(trimmed(field(line, 0, 9)))), "2.0 to 4.x");
+  major_ = static_cast<int>(*version);
+  const char type = line.size() > 20 ? line[20] : ' ';
+  if (type != 'N' && !(major_ == 2 && (type == 'G' || type == 'H')))
+    lines_.refuse(fmt::format("a file of type {}", in_quotes(trimmed(field(line, 20, 20)))), "navigation messages",
+                  "Observations belong under `rover` and `base`.");
+  if (major_ == 2) system_ = type == 'G' ? 'R' : type == 'H' ? 'S' : 'G';
+  while (lines_.next(line)) {
+    const std::string_view label = label_of(line);
+    if (label == "END OF HEADER") return;
+    read_header_line(line, label);
+  }
+  lines_.refuse("the end of the file", "END OF HEADER", "The header is cut off.");
+}
+
+void NavigationReader::read_header_line(std::string_view line, std::string_view label) {
+  constexpr std::size_t kNumber = 12;
+  const std::string_view kind = trimmed(field(line, 0, 4));
+  const bool alpha = label == "ION ALPHA" || (label == "IONOSPHERIC CORR" && kind == "GPSA");
+  const bool beta = label == "ION BETA" || (label == "IONOSPHERIC CORR" && kind == "GPSB");
+  if (!alpha && !beta) return;
+  const std::size_t first = label == "IONOSPHERIC CORR" ? 5 : 2;
+  if (!recording_.gps_ionosphere) recording_.gps_ionosphere.emplace();
+  auto& of = alpha ? recording_.gps_ionosphere->alpha : recording_.gps_ionosphere->beta;
+  for (std::size_t i = 0; i < of.size(); ++i) of.at(i) = number_field(line, first + kNumber * i, kNumber).value_or(0.0);
+}
+
+/// RINEX 4 says before each message what it is.
+bool NavigationReader::read_message() {
+  std::string_view line;
+  do {
+    if (!lines_.next(line)) return false;
+  } while (trimmed(line).empty());
+  if (major_ >= 4) {
+    if (line[0] != '>') lines_.refuse(in_quotes(line), "a line that begins with '>'");
+    const std::string_view record = field(line, 2, 3);
+    const std::string_view kind = trimmed(field(line, 10, 4));
+    if (record == "ION" && kind == "LNAV") {
+      read_ionosphere(line);
+      return true;
+    }
+    constexpr std::array<std::string_view, 7> kKnown{"LNAV", "INAV", "FNAV", "D1", "D2", "FDMA", "SBAS"};
+    if (record != "EPH" || std::ranges::find(kKnown, kind) == kKnown.end()) {
+      if (record == "EPH") ++unknown_;
+      return skip_to_next();
+    }
+    if (!lines_.next(line)) return false;
+  }
+  if (const auto message = numbers_of(line)) keep(*message);
+  return true;
+}
+
+bool NavigationReader::skip_to_next() {
+  std::string_view line;
+  while (lines_.next(line)) {
+    if (line.empty() || line[0] != '>') continue;
+    lines_.put_back();
+    return true;
+  }
+  return false;
+}
+
+void NavigationReader::read_ionosphere(std::string_view line) {
+  const bool gps = field(line, 6, 1) == "G";
+  std::array<double, 8> values{};
+  std::size_t at = 0;
+  for (const std::size_t from : {1U, 0U, 0U}) {
+    if (!lines_.next(line)) return;
+    for (std::size_t i = from; i < 4 && at < values.size(); ++i)
+      values.at(at++) = number_field(line, 4 + kWidth * i, kWidth).value_or(0.0);
+  }
+  if (!gps) return;
+  recording_.gps_ionosphere.emplace();
+  std::copy_n(values.begin(), 4, recording_.gps_ionosphere->alpha.begin());
+  std::copy_n(values.begin() + 4, 4, recording_.gps_ionosphere->beta.begin());
+}
+
+std::optional<geo::GpsTime> NavigationReader::time_of(std::string_view line, SatelliteSystem system) const {
+  const bool two = major_ == 2;
+  std::array<std::optional<int>, 5> date;  // year to minute
+  date[0] = integer_field(line, two ? 2 : 4, two ? 3 : 4);
+  for (std::size_t i = 1; i < date.size(); ++i) date.at(i) = integer_field(line, (two ? 2 : 5) + 3 * i, 3);
+  const auto second = number_field(line, two ? 17 : 20, two ? 5 : 3);
+  if (!second || std::ranges::any_of(date, [](const auto& v) { return !v; })) return std::nullopt;
+  const RinexTime scale = system == SatelliteSystem::kGlonass  ? RinexTime::kUtc
+                          : system == SatelliteSystem::kBeidou ? RinexTime::kBeidou
+                                                               : RinexTime::kGps;
+  return gps_time({full_year(*date[0]), *date[1], *date[2], *date[3], *date[4], *second}, scale);
+}
+
+/// The lines of a message: the first with satellite and time, the others indented.
+std::optional<Message> NavigationReader::numbers_of(std::string_view line) {
+  const bool two = major_ == 2;
+  const std::size_t indent = two ? 3 : 4;
+  const auto satellite = satellite_field(field(line, 0, two ? 2 : 3), system_);
+  const auto t = satellite ? time_of(line, satellite->system) : std::nullopt;
+  Message message;
+  if (t) message = {*satellite, *t, {}, 0};
+  bool whole = t.has_value();
+  std::size_t next = 0;
+  const auto take = [&](std::size_t at) {
+    if (next < message.values.size()) {
+      const std::string_view text = trimmed(field(line, at, kWidth));
+      const auto value = number_field(line, at, kWidth);
+      whole = whole && (value || text.empty());
+      message.values.at(next) = value.value_or(0.0);
+    }
+    ++next;
+  };
+  const std::size_t first = two ? 22 : 23;
+  for (std::size_t i = 0; i < 3; ++i) take(first + kWidth * i);
+  while (lines_.next(line)) {
+    if (line.size() < indent || trimmed(line.substr(0, indent)) != "") {
+      if (!trimmed(line).empty()) {
+        lines_.put_back();
+        break;
+      }
+      continue;
+    }
+    for (std::size_t i = 0; i < 4; ++i) take(indent + kWidth * i);
+    ++message.lines;
+  }
+  if (whole) return message;
+  ++spoiled_;
+  return std::nullopt;
+}
+
+void NavigationReader::keep(const Message& m) {
+  constexpr std::size_t kTabulatedLines = 3;
+  constexpr std::size_t kKeplerLines = 7;
+  const bool tabulated = m.satellite.system == SatelliteSystem::kGlonass || m.satellite.system == SatelliteSystem::kSbas;
+  if (m.satellite.system == SatelliteSystem::kNavic)
+    ++unknown_;
+  else if (m.lines < (tabulated ? kTabulatedLines : kKeplerLines))
+    ++spoiled_;
+  else if (tabulated)
+    keep_tabulated(m);
+  else
+    keep_kepler(m);
+}
+
+void NavigationReader::keep_kepler(const Message& m) {
+  constexpr double kGpsMinusBeidou = 14.0;  // s
+  const auto& v = m.values;
+  const bool beidou = m.satellite.system == SatelliteSystem::kBeidou;
+  KeplerEphemeris e;
+  e.satellite = m.satellite;
+  e.toc = m.t;
+  e.clock = {v[0], v[1], v[2]};
+  e.issue = static_cast<int>(std::clamp(v[3], 0.0, 4096.0));
+  e.crs = v[4];
+  e.delta_n = v[5];
+  e.M0 = v[6];
+  e.cuc = v[7];
+  e.eccentricity = v[8];
+  e.cus = v[9];
+  e.sqrt_a = v[10];
+  e.toe = nearest(m.t, v[11] + (beidou ? kGpsMinusBeidou : 0.0));
+  e.cic = v[12];
+  e.Omega0 = v[13];
+  e.cis = v[14];
+  e.i0 = v[15];
+  e.crc = v[16];
+  e.omega = v[17];
+  e.Omega_dot = v[18];
+  e.i_dot = v[19];
+  e.sources = static_cast<int>(std::clamp(v[20], 0.0, 65535.0));
+  e.accuracy_m = v[23];
+  e.health = static_cast<int>(std::clamp(v[24], 0.0, 65535.0));
+  e.group_delay = {v[25], v[26]};
+  if (m.satellite.system == SatelliteSystem::kGps || m.satellite.system == SatelliteSystem::kQzss)
+    e.group_delay[1] = 0.0;            // there the issue of the clock stands
+  constexpr double kGround = 2500.0;   // sqrt(m): below the surface
+  constexpr double kHighest = 8000.0;  // 64 000 km
+  constexpr double kWeek = 604800.0;
+  if (!(e.eccentricity >= 0.0 && e.eccentricity < 0.5) || !(e.sqrt_a > kGround && e.sqrt_a < kHighest) ||
+      !(v[11] >= 0.0 && v[11] <= kWeek) || !(std::abs(e.clock[0]) < 1.0)) {
+    ++impossible_;
+    return;
+  }
+  recording_.kepler.push_back(e);
+}
+
+void NavigationReader::keep_tabulated(const Message& m) {
+  constexpr double kKilometre = 1000.0;
+  const auto& v = m.values;
+  TabulatedEphemeris e;
+  e.satellite = m.satellite;
+  e.t = m.t;
+  e.clock_bias = v[0];
+  e.clock_drift = v[1];
+  e.r_e = kKilometre * Eigen::Vector3d(v[3], v[7], v[11]);
+  e.v_e = kKilometre * Eigen::Vector3d(v[4], v[8], v[12]);
+  e.a_e = kKilometre * Eigen::Vector3d(v[5], v[9], v[13]);
+  e.health = static_cast<int>(std::clamp(v[6], 0.0, 65535.0));
+  if (m.satellite.system == SatelliteSystem::kGlonass)
+    e.channel = static_cast<int>(std::clamp(v[10], -99.0, 300.0));
+  else
+    e.accuracy_m = v[10];
+  if (e.channel > 128) e.channel -= 256;  // some programs write the byte without its sign
+  constexpr double kLowest = 7e6, kHighest = 6e7, kFastest = 1e4;
+  if (!(e.r_e.norm() > kLowest && e.r_e.norm() < kHighest) || !(e.v_e.norm() < kFastest) || !(e.a_e.norm() < 1.0) ||
+      !(std::abs(e.clock_bias) < 1.0)) {
+    ++impossible_;
+    return;
+  }
+  recording_.tabulated.push_back(e);
+}
+
+void NavigationReader::sort_out() {
+  const auto kepler_key = [](const KeplerEphemeris& e) { return std::tuple(e.satellite, e.toe, e.sources, e.issue, e.toc); };
+  std::ranges::stable_sort(recording_.kepler, {}, kepler_key);
+  const auto same_kepler = std::ranges::unique(recording_.kepler, {}, kepler_key);
+  const auto tabulated_key = [](const TabulatedEphemeris& e) { return std::tuple(e.satellite, e.t); };
+  std::ranges::stable_sort(recording_.tabulated, {}, tabulated_key);
+  const auto same_tabulated = std::ranges::unique(recording_.tabulated, {}, tabulated_key);
+  repeated_ = static_cast<long>(same_kepler.size() + same_tabulated.size());
+  recording_.kepler.erase(same_kepler.begin(), same_kepler.end());
+  recording_.tabulated.erase(same_tabulated.begin(), same_tabulated.end());
+}
+
+void NavigationReader::report() {
+  recording_.events = lines_.events();
+  const auto add = [&](long number, const char* kind, const char* what, record::Event::Severity severity) {
+    if (number == 0) return;
+    recording_.events.push_back({severity, kind,
+                                 fmt::format("{}: {} message{} {}", recording_.source, number, number == 1 ? "" : "s", what),
+                                 std::nullopt, number});
+  };
+  using Severity = record::Event::Severity;
+  add(spoiled_, "navigation_spoiled", "that cannot be read left out", Severity::kWarning);
+  add(impossible_, "navigation_impossible", "with an orbit or a clock that cannot be left out", Severity::kWarning);
+  add(unknown_, "navigation_unknown", "of a kind that is not used", Severity::kInfo);
+  add(repeated_, "navigation_repeated", "that repeat another left out", Severity::kInfo);
+}
+
+}  // namespace
+
+record::NavigationRecording read_navigation(const std::filesystem::path& file) {
+  return NavigationReader(file).read();
+}
+
+}  // namespace coast::io

@@ -1,0 +1,442 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "../rinex_lines.hpp"
+#include "../text.hpp"
+#include "coast/io/rinex.hpp"
+
+namespace coast::io {
+
+namespace {
+
+using record::Observation;
+using record::Satellite;
+using record::SatelliteSystem;
+using record::Signal;
+
+constexpr std::size_t kWidth = 16;  // of a number with its two flags
+
+/// What one column of a satellite's record holds.
+struct ObservationType {
+  char quantity = ' ';   ///< 'C', 'L', 'D', 'S'; ' ': nothing that is used
+  std::size_t slot = 0;  ///< index of its signal
+};
+
+/// The columns of one system.
+struct SystemTypes {
+  std::vector<ObservationType> columns;
+  std::vector<Signal> signals;  ///< ascending
+
+  void set(const std::vector<std::pair<char, Signal>>& types) {
+    columns.clear();
+    signals.clear();
+    for (const auto& [quantity, signal] : types)
+      if (quantity != ' ') signals.push_back(signal);
+    std::ranges::sort(signals);
+    const auto repeated = std::ranges::unique(signals);
+    signals.erase(repeated.begin(), repeated.end());
+    for (const auto& [quantity, signal] : types)
+      columns.push_back({quantity, static_cast<std::size_t>(std::ranges::lower_bound(signals, signal) - signals.begin())});
+  }
+};
+
+bool is_quantity(char c) {
+  return c == 'C' || c == 'L' || c == 'D' || c == 'S';
+}
+
+/// RINEX 2 says the band of a phase, not how it was tracked: as the code that the file has in that band. P is the encrypted
+/// code, tracked without its key, of GPS, and the plain one of GLONASS.
+Signal signal_of_rinex2(char letter, char band, SatelliteSystem system, const std::vector<std::string>& types) {
+  const bool glonass = system == SatelliteSystem::kGlonass;
+  const auto has = [&](char code) { return std::ranges::find(types, std::string{code, band}) != types.end(); };
+  const char precise = glonass ? 'P' : 'W';
+  const char civil = band == '1' || glonass ? 'C' : 'X';
+  if (letter == 'P') return {band, precise};
+  if (letter == 'C') return {band, civil};
+  // The second band of GPS was P(Y) alone for decades; the first has C/A where anything is said of it.
+  const bool prefers_precise = band == '1' ? !has('C') && has('P') : has('P');
+  return {band, prefers_precise ? precise : civil};
+}
+
+class ObservationReader {
+ public:
+  explicit ObservationReader(const std::filesystem::path& file) : lines_(file) {}
+
+  record::ObservationRecording read() {
+    recording_.source = lines_.name();
+    read_header();
+    while (read_epoch()) {
+    }
+    if (recording_.epochs.empty())
+      lines_.refuse("no epoch with observations", "at least one", "The header is whole, but nothing follows it.");
+    report();
+    return std::move(recording_);
+  }
+
+ private:
+  /// Things that were repaired or left out, by kind.
+  struct Count {
+    long number = 0;
+    std::optional<geo::GpsTime> first;
+  };
+  void count(Count& what, std::optional<geo::GpsTime> t) {
+    if (what.number++ == 0) what.first = t;
+  }
+
+  void read_header();
+  void read_header_line(std::string_view line, std::string_view label);
+  void read_types3(std::string_view line);
+  void read_types2(std::string_view line);
+  void read_slots(std::string_view line);
+  void set_types2();
+  void check_header() const;
+
+  [[nodiscard]] bool read_epoch();
+  [[nodiscard]] std::optional<geo::Calendar> calendar_of(std::string_view line) const;
+  [[nodiscard]] bool satellites_of_epoch(std::string_view line, std::size_t satellites, std::vector<std::string>& ids);
+  [[nodiscard]] bool read_records2(const std::vector<std::string>& ids, bool power_failure);
+  [[nodiscard]] bool read_records3(std::size_t satellites, bool power_failure);
+  [[nodiscard]] bool skip_event(char flag, std::size_t lines);
+  void begin_satellite(std::optional<Satellite> satellite);
+  void take(std::string_view line, std::size_t at, std::size_t column);
+  void end_satellite(bool power_failure);
+  void keep_epoch();
+  void report();
+
+  RinexLines lines_;
+  record::ObservationRecording recording_;
+  int major_ = 0;
+  char system_ = ' ';  ///< of the whole file, 'M' for several
+  RinexTime scale_ = RinexTime::kGps;
+  std::array<SystemTypes, 7> types_;
+  std::vector<std::string> types2_;
+  std::size_t announced2_ = 0;
+  char types3_system_ = ' ';
+  std::array<std::vector<std::pair<char, Signal>>, 7> types3_;
+  bool has_types_ = false;
+
+  record::ObservationEpoch epoch_;
+  std::optional<Satellite> satellite_;
+  std::vector<Observation> row_;
+  Count spoiled_, impossible_, repeated_satellites_, unknown_satellites_, repeated_, reversed_, cut_off_, slips_, events_,
+      failures_;
+};
+
+void ObservationReader::read_header() {
+  std::string_view line;
+  bool first = true;
+  while (lines_.next(line)) {
+    const std::string_view label = label_of(line);
+    if (first) {
+      if (label != "RINEX VERSION / TYPE")
+        lines_.refuse(in_quotes(line), "RINEX VERSION / TYPE in columns 61 to 80 of the first line", "This is no RINEX file.");
+      const auto version = number_field(line, 0, 9);
+      if (!version || *version < 2.0 || *version >= 5.0)
+        lines_.refuse(fmt::format("RINEX version {}", in_quotes(trimmed(field(line, 0, 9)))), "2.0 to 4.x");
+      major_ = static_cast<int>(*version);
+      if (field(line, 20, 1) != "O")
+        lines_.refuse(fmt::format("a file of type {}", in_quotes(trimmed(field(line, 20, 20)))), "observations",
+                      "Navigation files belong under `nav`.");
+      system_ = line.size() > 40 ? line[40] : ' ';
+      first = false;
+      continue;
+    }
+    if (label == "END OF HEADER") {
+      check_header();
+      return;
+    }
+    read_header_line(line, label);
+  }
+  lines_.refuse("the end of the file", "END OF HEADER", "The header is cut off.");
+}
+
+void ObservationReader::read_header_line(std::string_view line, std::string_view label) {
+  const auto vector_of = [&](std::size_t width) -> std::optional<Eigen::Vector3d> {
+    const auto x = number_field(line, 0, width), y = number_field(line, width, width), z = number_field(line, 2 * width, width);
+    if (!x || !y || !z) return std::nullopt;
+    return Eigen::Vector3d(*x, *y, *z);
+  };
+  constexpr std::size_t kVector = 14;
+  if (label == "MARKER NAME") recording_.marker = trimmed(field(line, 0, 60));
+  if (label == "REC # / TYPE / VERS") recording_.receiver = trimmed(field(line, 20, 20));
+  if (label == "ANT # / TYPE") recording_.antenna = trimmed(field(line, 20, 20));
+  if (label == "APPROX POSITION XYZ") {
+    recording_.approximate_r_e = vector_of(kVector);
+    // Receivers write zeros where they do not know.
+    constexpr double kLeast = 6e6;  // m
+    if (recording_.approximate_r_e && recording_.approximate_r_e->norm() < kLeast) recording_.approximate_r_e.reset();
+  }
+  if (label == "ANTENNA: DELTA H/E/N")
+    if (const auto delta = vector_of(kVector)) recording_.antenna_offset_enu = {(*delta)(1), (*delta)(2), (*delta)(0)};
+  if (label == "SYS / # / OBS TYPES") read_types3(line);
+  if (label == "# / TYPES OF OBSERV") read_types2(line);
+  if (label == "GLONASS SLOT / FRQ #") read_slots(line);
+  if (label == "TIME OF FIRST OBS") {
+    const std::string_view scale = trimmed(field(line, 48, 3));
+    if (scale == "GLO" || (scale.empty() && system_ == 'R')) scale_ = RinexTime::kUtc;
+    if (scale == "BDT" || (scale.empty() && system_ == 'C')) scale_ = RinexTime::kBeidou;
+  }
+}
+
+void ObservationReader::read_types3(std::string_view line) {
+  if (line[0] != ' ') {
+    types3_system_ = line[0];
+    if (const auto system = record::system_of(types3_system_)) types3_.at(static_cast<std::size_t>(*system)).clear();
+  }
+  const auto system = record::system_of(types3_system_);
+  if (!system) return;
+  auto& types = types3_.at(static_cast<std::size_t>(*system));
+  constexpr std::size_t kFirst = 7, kStep = 4, kPerLine = 13;
+  for (std::size_t i = 0; i < kPerLine; ++i) {
+    const std::string_view type = trimmed(field(line, kFirst + kStep * i, 3));
+    if (type.empty()) continue;
+    if (type.size() < 2) lines_.refuse(fmt::format("the type {}", in_quotes(type)), "one like C1C");
+    const bool used = type.size() == 3 && is_quantity(type[0]);
+    types.emplace_back(used ? type[0] : ' ', Signal{type[1], type.size() > 2 ? type[2] : 'C'});
+  }
+  has_types_ = true;
+  types_.at(static_cast<std::size_t>(*system)).set(types);
+}
+
+void ObservationReader::read_types2(std::string_view line) {
+  if (const auto announced = integer_field(line, 0, 6)) {
+    announced2_ = static_cast<std::size_t>(std::clamp(*announced, 0, 999));
+    types2_.clear();
+  }
+  constexpr std::size_t kFirst = 10, kStep = 6, kPerLine = 9;
+  for (std::size_t i = 0; i < kPerLine && types2_.size() < announced2_; ++i) {
+    const std::string_view type = trimmed(field(line, kFirst + kStep * i, 2));
+    if (!type.empty()) types2_.emplace_back(type);
+  }
+  has_types_ = true;
+  set_types2();
+}
+
+void ObservationReader::set_types2() {
+  for (std::size_t s = 0; s < types_.size(); ++s) {
+    std::vector<std::pair<char, Signal>> types;
+    for (const std::string& type : types2_) {
+      const char letter = type[0];
+      const char band = type.size() > 1 ? type[1] : '1';
+      const bool known = letter == 'P' || is_quantity(letter);
+      types.emplace_back(!known          ? ' '
+                         : letter == 'P' ? 'C'
+                                         : letter,
+                         signal_of_rinex2(letter, band, static_cast<SatelliteSystem>(s), types2_));
+    }
+    types_[s].set(types);
+  }
+}
+
+void ObservationReader::read_slots(std::string_view line) {
+  constexpr std::size_t kFirst = 4, kStep = 7, kPerLine = 8;
+  for (std::size_t i = 0; i < kPerLine; ++i) {
+    const auto satellite = satellite_field(field(line, kFirst + kStep * i, 3), 'R');
+    const auto channel = integer_field(line, kFirst + kStep * i + 3, 3);
+    if (satellite && channel) recording_.glonass_channels[satellite->number] = *channel;
+  }
+}
+
+void ObservationReader::check_header() const {
+  if (!has_types_)
+    lines_.refuse("the end of the header", major_ == 2 ? "# / TYPES OF OBSERV" : "SYS / # / OBS TYPES",
+                  "Without it nobody knows what the columns are.");
+  if (major_ == 2 && types2_.size() < announced2_)
+    lines_.refuse(fmt::format("{} types of observations", types2_.size()), fmt::format("the {} announced", announced2_));
+}
+
+std::optional<geo::Calendar> ObservationReader::calendar_of(std::string_view line) const {
+  const bool two = major_ == 2;
+  const auto year = integer_field(line, two ? 0 : 2, two ? 3 : 4);
+  const std::size_t at = two ? 3 : 6;
+  std::array<std::optional<int>, 4> rest;  // month, day, hour, minute
+  for (std::size_t i = 0; i < rest.size(); ++i) rest[i] = integer_field(line, at + 3 * i, 3);
+  const auto second = number_field(line, at + 12, 11);
+  if (!year || !second || std::ranges::any_of(rest, [](const auto& v) { return !v; })) return std::nullopt;
+  return geo::Calendar{full_year(*year), *rest[0], *rest[1], *rest[2], *rest[3], *second};
+}
+
+bool ObservationReader::read_epoch() {
+  std::string_view line;
+  do {
+    if (!lines_.next(line)) return false;
+  } while (trimmed(line).empty());
+  const bool two = major_ == 2;
+  if (!two && line[0] != '>') lines_.refuse(in_quotes(line), "an epoch line, which begins with '>'");
+  const std::size_t flag_at = two ? 28 : 31;
+  const char flag = line.size() > flag_at && line[flag_at] != ' ' ? line[flag_at] : '0';
+  const auto satellites = integer_field(line, flag_at + 1, 3);
+  if (!satellites || *satellites < 0 || flag < '0' || flag > '6')
+    lines_.refuse(in_quotes(line, 60), "an epoch line with its flag and the number of satellites");
+  const auto number = static_cast<std::size_t>(*satellites);
+  if (flag > '1') return skip_event(flag, number);
+  const auto calendar = calendar_of(line);
+  const auto t = calendar ? gps_time(*calendar, scale_) : std::nullopt;
+  if (!t) lines_.refuse(in_quotes(line, 29), "a date and a time");
+  epoch_ = {*t, {}};
+  if (flag == '1') count(failures_, *t);
+  std::vector<std::string> ids;
+  const bool whole =
+      two ? satellites_of_epoch(line, number, ids) && read_records2(ids, flag == '1') : read_records3(number, flag == '1');
+  if (!whole) {
+    count(cut_off_, *t);
+    return false;
+  }
+  keep_epoch();
+  return true;
+}
+
+bool ObservationReader::satellites_of_epoch(std::string_view line, std::size_t satellites, std::vector<std::string>& ids) {
+  constexpr std::size_t kFirst = 32, kPerLine = 12;
+  for (std::size_t i = 0; i < satellites; ++i) {
+    if (i > 0 && i % kPerLine == 0 && !lines_.next(line)) return false;
+    ids.emplace_back(field(line, kFirst + 3 * (i % kPerLine), 3));
+  }
+  return true;
+}
+
+bool ObservationReader::read_records2(const std::vector<std::string>& ids, bool power_failure) {
+  constexpr std::size_t kPerLine = 5;
+  std::string_view line;
+  for (const std::string& id : ids) {
+    begin_satellite(satellite_field(id, system_ == 'M' ? 'G' : system_));
+    for (std::size_t i = 0; i < types2_.size(); ++i) {
+      if (i % kPerLine == 0 && !lines_.next(line)) return false;
+      take(line, kWidth * (i % kPerLine), i);
+    }
+    end_satellite(power_failure);
+  }
+  return true;
+}
+
+bool ObservationReader::read_records3(std::size_t satellites, bool power_failure) {
+  std::string_view line;
+  for (std::size_t s = 0; s < satellites; ++s) {
+    if (!lines_.next(line)) return false;
+    if (!line.empty() && line[0] == '>') {  // fewer satellites than announced
+      lines_.put_back();
+      count(spoiled_, epoch_.t);
+      return true;
+    }
+    begin_satellite(satellite_field(field(line, 0, 3), system_));
+    if (satellite_) {
+      const std::size_t columns = types_.at(static_cast<std::size_t>(satellite_->system)).columns.size();
+      for (std::size_t i = 0; i < columns; ++i) take(line, 3 + kWidth * i, i);
+    }
+    end_satellite(power_failure);
+  }
+  return true;
+}
+
+/// Flags 2 to 5 announce lines of a header, 6 cycle slips in the form of observations.
+bool ObservationReader::skip_event(char flag, std::size_t lines) {
+  count(flag == '6' ? slips_ : events_, std::nullopt);
+  constexpr std::size_t kPerLine = 5;
+  if (flag == '6' && major_ == 2) lines *= (types2_.size() + kPerLine - 1) / kPerLine;
+  std::string_view line;
+  for (std::size_t i = 0; i < lines; ++i) {
+    if (!lines_.next(line)) {
+      count(cut_off_, std::nullopt);
+      return false;
+    }
+    if (flag != '6') read_header_line(line, label_of(line));
+  }
+  return true;
+}
+
+void ObservationReader::begin_satellite(std::optional<Satellite> satellite) {
+  satellite_ = satellite;
+  row_.clear();
+  if (!satellite) return count(unknown_satellites_, epoch_.t);
+  for (const Signal signal : types_.at(static_cast<std::size_t>(satellite->system)).signals) {
+    Observation& observation = row_.emplace_back();
+    observation.satellite = *satellite;
+    observation.signal = signal;
+  }
+}
+
+void ObservationReader::take(std::string_view line, std::size_t at, std::size_t column) {
+  constexpr std::size_t kNumber = 14;
+  if (!satellite_) return;
+  const ObservationType type = types_.at(static_cast<std::size_t>(satellite_->system)).columns[column];
+  if (type.quantity == ' ' || trimmed(field(line, at, kNumber)).empty()) return;
+  const auto value = number_field(line, at, kNumber);
+  if (!value) return count(spoiled_, epoch_.t);
+  if (*value == 0.0) return;
+  const double largest = type.quantity == 'C' ? 1e9 : type.quantity == 'L' ? 1e11 : type.quantity == 'D' ? 1e6 : 1e3;
+  if (std::abs(*value) > largest || (type.quantity == 'C' && *value < 0.0)) return count(impossible_, epoch_.t);
+  Observation& observation = row_[type.slot];
+  switch (type.quantity) {
+    case 'C':
+      observation.code_m = *value;
+      break;
+    case 'D':
+      observation.doppler_hz = *value;
+      break;
+    case 'S':
+      observation.cn0_dbhz = *value;
+      break;
+    default: {
+      observation.phase_cycles = *value;
+      const std::string_view flag = field(line, at + kNumber, 1);
+      const int bits = !flag.empty() && flag[0] >= '0' && flag[0] <= '9' ? flag[0] - '0' : 0;
+      observation.lost_lock = (bits & 1) != 0;
+      observation.half_cycle = (bits & 2) != 0;
+    }
+  }
+}
+
+void ObservationReader::end_satellite(bool power_failure) {
+  if (!satellite_) return;
+  const auto same = [&](const Observation& o) { return o.satellite == *satellite_; };
+  if (std::ranges::any_of(epoch_.observations, same)) return count(repeated_satellites_, epoch_.t);
+  for (Observation& observation : row_) {
+    if (!observation.code_m && !observation.phase_cycles && !observation.doppler_hz) continue;
+    observation.lost_lock = observation.lost_lock || power_failure;
+    epoch_.observations.push_back(observation);
+  }
+}
+
+void ObservationReader::keep_epoch() {
+  if (epoch_.observations.empty()) return;
+  auto& epochs = recording_.epochs;
+  if (!epochs.empty() && epoch_.t == epochs.back().t) return count(repeated_, epoch_.t);
+  if (!epochs.empty() && epoch_.t < epochs.back().t) return count(reversed_, epoch_.t);
+  std::ranges::stable_sort(epoch_.observations, {}, [](const Observation& o) { return std::pair(o.satellite, o.signal); });
+  epochs.push_back(std::move(epoch_));
+}
+
+void ObservationReader::report() {
+  recording_.events = lines_.events();
+  const auto add = [&](const Count& what, const char* kind, const char* one, const char* many, const char* done,
+                       record::Event::Severity severity = record::Event::Severity::kWarning) {
+    if (what.number == 0) return;
+    recording_.events.push_back({severity, kind,
+                                 fmt::format("{}: {} {} {}{}", recording_.source, what.number, what.number == 1 ? one : many,
+                                             done, what.first ? "; first at " + geo::to_string(*what.first) : ""),
+                                 what.first, what.number});
+  };
+  add(spoiled_, "rinex_spoiled", "number or record", "numbers or records", "that cannot be read left out");
+  add(impossible_, "rinex_impossible", "number", "numbers", "that no receiver measures left out");
+  add(unknown_satellites_, "rinex_unknown_satellite", "record", "records", "of no known satellite left out");
+  add(repeated_satellites_, "rinex_repeated_satellite", "record", "records",
+      "of a satellite that the epoch has already left out");
+  add(repeated_, "rinex_repeated_epoch", "epoch", "epochs", "with the time of the one before left out");
+  add(reversed_, "rinex_reversed_epoch", "epoch", "epochs", "earlier than the one before left out");
+  add(cut_off_, "rinex_cut_off", "epoch", "epochs", "that the end of the file cuts off left out");
+  add(failures_, "rinex_power_failure", "power failure", "power failures", "of the receiver: all signals lost lock",
+      record::Event::Severity::kInfo);
+  add(slips_, "rinex_slip_records", "record", "records", "of cycle slips not used", record::Event::Severity::kInfo);
+  add(events_, "rinex_event", "event", "events", "of the receiver or the operator", record::Event::Severity::kInfo);
+}
+
+}  // namespace
+
+record::ObservationRecording read_observations(const std::filesystem::path& file) {
+  return ObservationReader(file).read();
+}
+
+}  // namespace coast::io

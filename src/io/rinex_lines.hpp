@@ -1,0 +1,55 @@
+#pragma once
+// Lines and fields of RINEX files. Private to the room.
+
+#include <memory>
+#include <optional>
+#include <string>
+#include <string_view>
+
+#include "coast/geo/time.hpp"
+#include "coast/record/satellite.hpp"
+#include "hatanaka.hpp"
+
+namespace coast::io {
+
+/// Lines of a RINEX file, compact or not.
+class RinexLines {
+ public:
+  explicit RinexLines(const std::filesystem::path& file);
+  /// The next line; the view holds until the next call.
+  [[nodiscard]] bool next(std::string_view& line);
+  /// The line given last comes once more.
+  void put_back() { again_ = true; }
+  [[nodiscard]] const std::string& name() const { return lines_.name(); }
+  [[nodiscard]] const record::Events& events() const { return lines_.events(); }
+  [[noreturn]] void refuse(std::string found, std::string expected, std::string what_to_do = "") const;
+
+ private:
+  LineReader lines_;
+  std::unique_ptr<Hatanaka> compact_;
+  std::string first_;
+  bool first_waits_ = false;
+  std::string_view line_;
+  bool again_ = false;
+};
+
+/// Text of a field; what lies beyond the end of the line is blank.
+[[nodiscard]] std::string_view field(std::string_view line, std::size_t at, std::size_t width);
+[[nodiscard]] std::optional<int> integer_field(std::string_view line, std::size_t at, std::size_t width);
+/// With D or E before the exponent. Finite.
+[[nodiscard]] std::optional<double> number_field(std::string_view line, std::size_t at, std::size_t width);
+/// An excerpt in quotation marks, for messages.
+[[nodiscard]] std::string in_quotes(std::string_view text, std::size_t length = 40);
+/// Columns 61 to 80 of a header line.
+[[nodiscard]] std::string_view label_of(std::string_view line);
+
+/// "G05", "G 5", " 5" (of `system`)
+[[nodiscard]] std::optional<record::Satellite> satellite_field(std::string_view text, char system);
+
+enum class RinexTime { kGps, kUtc, kBeidou };
+/// Calendar fields to GPS time; nothing where they are none.
+[[nodiscard]] std::optional<geo::GpsTime> gps_time(const geo::Calendar& calendar, RinexTime scale);
+/// 2021 of 21, 1999 of 99 and of 1999
+[[nodiscard]] int full_year(int year);
+
+}  // namespace coast::io
