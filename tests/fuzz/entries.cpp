@@ -1,6 +1,7 @@
 #include "fuzz/entries.hpp"
 
 #include <Eigen/Cholesky>
+#include <cmath>
 #include <fstream>
 #include <stdexcept>
 
@@ -8,6 +9,7 @@
 #include "coast/io/imu.hpp"
 #include "coast/io/inspect.hpp"
 #include "coast/io/reference.hpp"
+#include "coast/io/rinex.hpp"
 #include "coast/io/yaml.hpp"
 #include "coast/record/error.hpp"
 #include "support/support.hpp"
@@ -52,6 +54,28 @@ void check(const record::Trajectory& trajectory) {
     require(s.r_eb_e.allFinite() && s.v_eb_e.allFinite(), "states are finite");
     require(std::abs(s.q_b_e.norm() - 1.0) < 1e-9, "quaternions are unit");
   }
+}
+
+void check(const record::ObservationRecording& recording) {
+  require(!recording.epochs.empty(), "at least one epoch");
+  require_increasing(recording.epochs);
+  for (const auto& epoch : recording.epochs) {
+    require(!epoch.observations.empty(), "no empty epochs");
+    for (const auto& o : epoch.observations) {
+      for (const auto& value : {o.code_m, o.phase_cycles, o.doppler_hz, o.cn0_dbhz})
+        require(!value || std::isfinite(*value), "measurements are finite");
+      require(o.satellite.number >= 1 && o.satellite.number <= 99, "satellites have a number");
+    }
+  }
+}
+
+void check(const record::NavigationRecording& navigation) {
+  require(!navigation.kepler.empty() || !navigation.tabulated.empty(), "at least one ephemeris");
+  for (const auto& e : navigation.kepler) {
+    require(e.eccentricity >= 0.0 && e.eccentricity < 1.0 && e.sqrt_a > 0.0, "orbits are ellipses");
+    require(std::abs(e.toe - e.toc) <= 302401.0, "orbit and clock are of one week");
+  }
+  for (const auto& e : navigation.tabulated) require(e.r_e.allFinite() && e.v_e.allFinite(), "orbits are finite");
 }
 
 /// The bytes as a file.
@@ -126,6 +150,14 @@ void reference_auto(std::string_view bytes) {
   read_and_check([&] { return io::read_reference(options); });
 }
 
+void rinex_observation(std::string_view bytes) {
+  read_and_check([&] { return io::read_observations(as_file(bytes)); });
+}
+
+void rinex_navigation(std::string_view bytes) {
+  read_and_check([&] { return io::read_navigation(as_file(bytes)); });
+}
+
 void yaml(std::string_view bytes) {
   try {
     const config::Node root = io::parse_yaml(std::string(bytes), "run.yaml");
@@ -142,8 +174,14 @@ void yaml(std::string_view bytes) {
 
 const std::vector<Entry>& entries() {
   static const std::vector<Entry> table = {
-      {"imu", imu_auto},   {"imu_table", imu_table},   {"imu_binary", imu_binary},
-      {"gnss", gnss_auto}, {"gnss_table", gnss_table}, {"reference", reference_auto},
+      {"imu", imu_auto},
+      {"imu_table", imu_table},
+      {"imu_binary", imu_binary},
+      {"gnss", gnss_auto},
+      {"gnss_table", gnss_table},
+      {"reference", reference_auto},
+      {"rinex_observation", rinex_observation},
+      {"rinex_navigation", rinex_navigation},
       {"yaml", yaml},
   };
   return table;
