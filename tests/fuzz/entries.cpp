@@ -8,6 +8,7 @@
 #include "coast/io/gnss.hpp"
 #include "coast/io/imu.hpp"
 #include "coast/io/inspect.hpp"
+#include "coast/io/products.hpp"
 #include "coast/io/reference.hpp"
 #include "coast/io/rinex.hpp"
 #include "coast/io/yaml.hpp"
@@ -76,6 +77,14 @@ void check(const record::NavigationRecording& navigation) {
     require(std::abs(e.toe - e.toc) <= 302401.0, "orbit and clock are of one week");
   }
   for (const auto& e : navigation.tabulated) require(e.r_e.allFinite() && e.v_e.allFinite(), "orbits are finite");
+}
+
+void check(const record::PreciseOrbits& orbits) {
+  for (const auto& [satellite, points] : orbits.points) {
+    require_increasing(points);
+    for (const auto& point : points)
+      require(point.r_e.allFinite() && (!point.clock_s || std::isfinite(*point.clock_s)), "orbits are finite");
+  }
 }
 
 /// The bytes as a file.
@@ -158,6 +167,10 @@ void rinex_navigation(std::string_view bytes) {
   read_and_check([&] { return io::read_navigation(as_file(bytes)); });
 }
 
+void sp3(std::string_view bytes) {
+  read_and_check([&] { return io::read_sp3({as_file(bytes)}); });
+}
+
 void yaml(std::string_view bytes) {
   try {
     const config::Node root = io::parse_yaml(std::string(bytes), "run.yaml");
@@ -182,6 +195,7 @@ const std::vector<Entry>& entries() {
       {"reference", reference_auto},
       {"rinex_observation", rinex_observation},
       {"rinex_navigation", rinex_navigation},
+      {"sp3", sp3},
       {"yaml", yaml},
   };
   return table;

@@ -41,9 +41,9 @@ struct KeplerEphemeris {
 /// Position, velocity and acceleration of GLONASS and SBAS in ECEF (PZ-90 as WGS 84).
 struct TabulatedEphemeris {
   Satellite satellite;
-  geo::GpsTime t;            ///< of position and clock
-  double clock_bias = 0.0;   ///< s: -tau_n; added to the satellite's clock it would be wrong, as of the others
-  double clock_drift = 0.0;  ///< gamma_n
+  geo::GpsTime t;                                 ///< of position and clock
+  double clock_bias = 0.0;                        ///< s: -tau_n of GLONASS
+  double clock_drift = 0.0;                       ///< gamma_n
   Eigen::Vector3d r_e = Eigen::Vector3d::Zero();  ///< m
   Eigen::Vector3d v_e = Eigen::Vector3d::Zero();  ///< m/s
   Eigen::Vector3d a_e = Eigen::Vector3d::Zero();  ///< m/s^2: of Sun and Moon (GLONASS); of all (SBAS)

@@ -171,8 +171,8 @@ void ObservationReader::read_header_line(std::string_view line, std::string_view
   }
   if (label == "ANTENNA: DELTA H/E/N")
     if (const auto delta = vector_of(kVector)) recording_.antenna_offset_enu = {(*delta)(1), (*delta)(2), (*delta)(0)};
-  if (label == "SYS / # / OBS TYPES") read_types3(line);
-  if (label == "# / TYPES OF OBSERV") read_types2(line);
+  if (major_ > 2 && label == "SYS / # / OBS TYPES") read_types3(line);
+  if (major_ == 2 && label == "# / TYPES OF OBSERV") read_types2(line);
   if (label == "GLONASS SLOT / FRQ #") read_slots(line);
   if (label == "TIME OF FIRST OBS") {
     const std::string_view scale = trimmed(field(line, 48, 3));

@@ -1,0 +1,49 @@
+#pragma once
+// Where satellites are and what their clocks show, from broadcast ephemerides.
+
+#include <map>
+#include <optional>
+#include <vector>
+
+#include "coast/record/navigation.hpp"
+
+namespace coast::carrier {
+
+struct SatelliteState {
+  Eigen::Vector3d r_e = Eigen::Vector3d::Zero();  ///< antenna's phase centre, in the ECEF of time t, m
+  Eigen::Vector3d v_e = Eigen::Vector3d::Zero();  ///< m/s
+  double clock_s = 0.0;                           ///< ahead of the system's time; with relativity, without group delays
+  double clock_rate = 0.0;                        ///< s/s
+};
+
+/// GPS, QZSS: IS-GPS-200 20.3.3.4.3; Galileo: OS SIS ICD 5.1.1; BeiDou, with its geostationary satellites:
+/// BDS-SIS-ICD-B1I 5.2.4.
+/// @param t  of transmission, GPS time. The time group delay of the user's signal is not taken off.
+[[nodiscard]] SatelliteState satellite_state(const record::KeplerEphemeris& ephemeris, geo::GpsTime t);
+/// GLONASS: ICD 5.1 annex A.3.1.2, Runge-Kutta of fourth order over at most 60 s a step; SBAS: RTCA DO-229 A.4.4.11.
+[[nodiscard]] SatelliteState satellite_state(const record::TabulatedEphemeris& ephemeris, geo::GpsTime t);
+
+/// The broadcast ephemerides of a mission. Unhealthy satellites have none. An ephemeris that puts its satellite elsewhere (100
+/// km) than the one before and the one after it, which agree with each other, was filed under a wrong number or is damaged: it
+/// is left out, with an event.
+class BroadcastOrbits {
+ public:
+  explicit BroadcastOrbits(const record::NavigationRecording& navigation);
+
+  /// By the ephemeris nearest in time that is valid (2 h of GPS and QZSS, 15 min of GLONASS, 6 min of SBAS; Galileo 4 h and
+  /// BeiDou 1 h behind the reference, a quarter of that before it); of Galileo I/NAV where both are there.
+  [[nodiscard]] std::optional<SatelliteState> at(record::Satellite satellite, geo::GpsTime t) const;
+  /// The ephemeris that `at` would use, of the Keplerian ones: for group delays, accuracy and issue.
+  [[nodiscard]] const record::KeplerEphemeris* kepler_at(record::Satellite satellite, geo::GpsTime t) const;
+  [[nodiscard]] const record::TabulatedEphemeris* tabulated_at(record::Satellite satellite, geo::GpsTime t) const;
+  [[nodiscard]] const record::Events& events() const { return events_; }
+
+ private:
+  void leave_out_strangers(record::Satellite satellite, std::vector<record::KeplerEphemeris>& ephemerides);
+
+  std::map<record::Satellite, std::vector<record::KeplerEphemeris>> kepler_;
+  std::map<record::Satellite, std::vector<record::TabulatedEphemeris>> tabulated_;
+  record::Events events_;
+};
+
+}  // namespace coast::carrier

@@ -1,0 +1,29 @@
+#pragma once
+// Orbits and clocks of satellites as analysis centres tabulate them.
+
+#include <Eigen/Core>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "coast/geo/time.hpp"
+#include "coast/record/event.hpp"
+#include "coast/record/satellite.hpp"
+
+namespace coast::record {
+
+/// One line of the table.
+struct OrbitPoint {
+  geo::GpsTime t;
+  Eigen::Vector3d r_e = Eigen::Vector3d::Zero();  ///< centre of mass, ECEF, m
+  std::optional<double> clock_s;                  ///< without the periodic part of relativity
+};
+
+struct PreciseOrbits {
+  std::string source;
+  std::map<Satellite, std::vector<OrbitPoint>> points;  ///< strictly increasing in time
+  Events events;
+};
+
+}  // namespace coast::record
