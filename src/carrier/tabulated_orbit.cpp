@@ -10,13 +10,13 @@ namespace {
 
 using Motion = Eigen::Matrix<double, 6, 1>;
 
-/// d/dt of position and velocity in the rotating frame of PZ-90, with the oblateness of the Earth and the given acceleration by
+/// d/dt of position and velocity in the rotating frame of PZ-90.11, with the oblateness of the Earth and the given acceleration by
 /// Sun and Moon.
 Motion derivative(const Motion& x, const Eigen::Vector3d& sun_and_moon) {
-  constexpr double kMu = 3.9860044e14;
+  constexpr double kMu = 3.986004418e14;
   constexpr double kRadius = 6378136.0;
-  constexpr double kJ2 = 1.0826257e-3;
-  constexpr double kOmega = 7.292115e-5;
+  constexpr double kJ2 = 1.08262575e-3;
+  constexpr double kOmega = 7.2921151467e-5;
   const Eigen::Vector3d r = x.head<3>();
   const Eigen::Vector3d v = x.tail<3>();
   const double r2 = r.squaredNorm();
