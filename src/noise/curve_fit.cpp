@@ -100,41 +100,58 @@ class RateGrid {
   std::vector<double> best() {
     std::vector<double> u(model_.parameters());
     for (std::size_t i = 0; i < u.size(); ++i) u[i] = ranges_[i].lower;
-    const auto partials = std::ranges::count_if(
-        roles_.rates, [&](std::size_t i) { return model_.parameter(i).kind == ParameterInfo::Kind::kPartial; });
-    if (roles_.rates.size() <= kTogether && partials <= 1) {
+    if (combinations() <= kTogether) {
       vary(0, 0, u);
       return best_;
     }
     for (const std::size_t i : roles_.rates) u[i] = on_grid(i, kPoints / 2);
     try_variances(u);
     for (int sweep = 0; sweep < kSweeps; ++sweep)
-      for (const std::size_t i : roles_.rates) {
-        u = best_;
-        for (int k = 0; k < kPoints; ++k) {
-          u[i] = on_grid(i, k);
-          try_variances(u);
-        }
-      }
+      for (std::size_t which = 0; which < roles_.rates.size();) which += vary_about_best(which);
     return best_;
   }
 
  private:
   static constexpr int kPoints = 14;
-  static constexpr std::size_t kTogether = 4;
+  static constexpr double kTogether = 3000.0;  // combinations
   static constexpr int kSweeps = 3;
 
   [[nodiscard]] double on_grid(std::size_t i, int k) const {
-    if (model_.parameter(i).kind == ParameterInfo::Kind::kPartial) return -2.0 + 4.0 * k / (kPoints - 1);
+    if (is_partial(i)) return -2.0 + 4.0 * k / (kPoints - 1);
     return ranges_[i].lower + (ranges_[i].upper - ranges_[i].lower) * (k + 0.5) / kPoints;
+  }
+  [[nodiscard]] bool is_partial(std::size_t i) const { return model_.parameter(i).kind == ParameterInfo::Kind::kPartial; }
+  /// Of all rates: in ascending order those of processes that are alike, any of partial autocorrelations.
+  [[nodiscard]] double combinations() const {
+    double count = 1.0;
+    int ascending = 0;
+    for (const std::size_t i : roles_.rates) {
+      count *= is_partial(i) ? kPoints : (kPoints - ascending) / (ascending + 1.0);
+      if (!is_partial(i)) ++ascending;
+    }
+    return count;
+  }
+  /// One rate, or two partial autocorrelations that stand together: where a resonance is takes both.
+  /// @return how many
+  std::size_t vary_about_best(std::size_t which) {
+    const std::vector<double> about = best_;
+    const std::size_t i = roles_.rates[which];
+    const bool pair = which + 1 < roles_.rates.size() && is_partial(i) && roles_.rates[which + 1] == i + 1 && is_partial(i + 1);
+    for (int k = 0; k < kPoints; ++k)
+      for (int l = 0; l < (pair ? kPoints : 1); ++l) {
+        std::vector<double> u = about;
+        u[i] = on_grid(i, k);
+        if (pair) u[i + 1] = on_grid(i + 1, l);
+        try_variances(u);
+      }
+    return pair ? 2 : 1;
   }
   void vary(std::size_t which, int from, std::vector<double>& u) {
     if (which == roles_.rates.size()) return try_variances(u);
     const std::size_t i = roles_.rates[which];
-    const bool partial = model_.parameter(i).kind == ParameterInfo::Kind::kPartial;
-    for (int k = from; k < kPoints; ++k) {
+    for (int k = is_partial(i) ? 0 : from; k < kPoints; ++k) {
       u[i] = on_grid(i, k);
-      vary(which + 1, partial ? 0 : k + 1, u);
+      vary(which + 1, is_partial(i) ? from : k + 1, u);
     }
   }
   void try_variances(std::vector<double> u) {

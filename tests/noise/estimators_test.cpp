@@ -122,6 +122,20 @@ TEST_P(CurveFits, FindRatesWithoutAStart) {
   for (std::size_t i = 0; i < u.size(); ++i) EXPECT_NEAR(u[i], truth[i], i == 0 ? 0.05 : 0.4) << i;
 }
 
+// The resonance of calibration-autoregression, on a quarter of its record: from the curve alone and from the truth the same
+// top.
+TEST(CurveFit, LeadsToAResonance) {
+  const SumModel model = test::sum({"white_noise", "random_walk", "ar"}, Mean::kLevel);
+  const double first = 2.0 * 0.95 * std::cos(0.3) / (1.0 + 0.9025);
+  std::vector<double> truth{std::log(0.09), std::log(1e-4), std::atanh(first), std::atanh(-0.9025), std::log(0.01)};
+  const StaticSignal record = StaticSignal::regular(test::simulate_block(model.block(truth, 1.0), 5000, 4), 1.0);
+  const Likelihood likelihood({record}, model);
+  const Fit informed = fit_maximum_likelihood(likelihood, truth);
+  const Fit found =
+      fit_maximum_likelihood(likelihood, fit_curve(allan_curve(record), model, likelihood.scale(), CurveFit::kWaveletMoments));
+  EXPECT_NEAR(found.log_likelihood, informed.log_likelihood, 1e-4);
+}
+
 TEST(Estimators, HolesLeaveTheEstimateWhereItWas) {
   const StaticSignal whole = figure_1(9);
   std::vector<std::size_t> missing;
