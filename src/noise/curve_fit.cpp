@@ -113,7 +113,7 @@ class RateGrid {
 
  private:
   static constexpr int kPoints = 14;
-  static constexpr double kTogether = 3000.0;  // combinations
+  static constexpr double kTogether = 6000.0;  // combinations
   static constexpr int kSweeps = 3;
 
   [[nodiscard]] double on_grid(std::size_t i, int k) const {

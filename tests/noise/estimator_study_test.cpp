@@ -54,7 +54,7 @@ TEST(EstimatorStudy, LevelAndSlopeAreThoseOfLeastSquares) {
   EstimatorStudy study = white_noise_study();
   study.truth.level = 7.0;
   study.truth.slope = 0.01;
-  study.estimators = {{.name = "default", .model = model}};
+  study.estimators = {{.name = "default", .model = model, .intervals = true}};
   const EstimatorSummary summary = summarise(study, run_estimator_study(study)).at(0);
   ASSERT_EQ(summary.parameters.size(), 3U);
   const ParameterSummary& level = summary.parameters[1];
