@@ -51,39 +51,39 @@ SatelliteState satellite_state(const record::KeplerEphemeris& p, geo::GpsTime t)
   const double a = p.sqrt_a * p.sqrt_a;
   const double n = std::sqrt(earth.mu / (a * a * a)) + p.delta_n;
   const double e = p.eccentricity;
-  const double E = eccentric_anomaly(p.M0 + n * tk, e);
+  const double E = eccentric_anomaly(p.mean_anomaly + n * tk, e);
   const double E_rate = n / (1.0 - e * std::cos(E));
 
   // Argument of latitude, radius and inclination with their harmonic corrections.
   const double root = std::sqrt(1.0 - e * e);
-  const double phi = std::atan2(root * std::sin(E), std::cos(E) - e) + p.omega;
+  const double phi = std::atan2(root * std::sin(E), std::cos(E) - e) + p.perigee;
   const double phi_rate = root * E_rate / (1.0 - e * std::cos(E));
   const double s2 = std::sin(2.0 * phi), c2 = std::cos(2.0 * phi);
   const double u = phi + p.cus * s2 + p.cuc * c2;
   const double u_rate = phi_rate * (1.0 + 2.0 * (p.cus * c2 - p.cuc * s2));
   const double r = a * (1.0 - e * std::cos(E)) + p.crs * s2 + p.crc * c2;
   const double r_rate = a * e * std::sin(E) * E_rate + 2.0 * phi_rate * (p.crs * c2 - p.crc * s2);
-  const double i = p.i0 + p.i_dot * tk + p.cis * s2 + p.cic * c2;
-  const double i_rate = p.i_dot + 2.0 * phi_rate * (p.cis * c2 - p.cic * s2);
+  const double i = p.inclination + p.inclination_rate * tk + p.cis * s2 + p.cic * c2;
+  const double i_rate = p.inclination_rate + 2.0 * phi_rate * (p.cis * c2 - p.cic * s2);
   const Eigen::Vector3d in_plane(r * std::cos(u), r * std::sin(u), 0.0);
   const Eigen::Vector3d in_plane_rate(r_rate * std::cos(u) - r * u_rate * std::sin(u),
                                       r_rate * std::sin(u) + r * u_rate * std::cos(u), 0.0);
 
-  // Omega0 is the node at the begin of the week; of BeiDou by its own week, 14 s later.
+  // The node is stated for the begin of the week; of BeiDou by its own week, 14 s later.
   constexpr double kGpsMinusBeidou = 14.0;
   const double toe = p.satellite.system == SatelliteSystem::kBeidou ? (p.toe - kGpsMinusBeidou).sow() : p.toe.sow();
   const bool geostationary = is_geostationary(p.satellite);
-  const double Omega_rate = p.Omega_dot - (geostationary ? 0.0 : earth.omega);
-  const double Omega = p.Omega0 + Omega_rate * tk - earth.omega * toe;
+  const double node_rate = p.node_rate - (geostationary ? 0.0 : earth.omega);
+  const double node = p.node + node_rate * tk - earth.omega * toe;
   using Eigen::AngleAxisd;
   using Eigen::Vector3d;
-  const Eigen::Matrix3d node = AngleAxisd(Omega, Vector3d::UnitZ()).toRotationMatrix();
+  const Eigen::Matrix3d turn = AngleAxisd(node, Vector3d::UnitZ()).toRotationMatrix();
   const Eigen::Matrix3d tilt = AngleAxisd(i, Vector3d::UnitX()).toRotationMatrix();
   SatelliteState state;
   const Vector3d tilted = tilt * in_plane;
-  state.r_e = node * tilted;
+  state.r_e = turn * tilted;
   state.v_e =
-      node * (tilt * in_plane_rate + i_rate * Vector3d::UnitX().cross(tilted) + Omega_rate * Vector3d::UnitZ().cross(tilted));
+      turn * (tilt * in_plane_rate + i_rate * Vector3d::UnitX().cross(tilted) + node_rate * Vector3d::UnitZ().cross(tilted));
   if (geostationary) {
     // Its elements refer to a plane tilted by 5 degrees, in a frame that does not rotate.
     constexpr double kTilt = 5.0 * std::numbers::pi / 180.0;

@@ -10,8 +10,8 @@ namespace {
 
 using Motion = Eigen::Matrix<double, 6, 1>;
 
-/// d/dt of position and velocity in the rotating frame of PZ-90.11, with the oblateness of the Earth and the given acceleration by
-/// Sun and Moon.
+/// d/dt of position and velocity in the rotating frame of PZ-90.11, with the oblateness of the Earth and the given acceleration
+/// by Sun and Moon.
 Motion derivative(const Motion& x, const Eigen::Vector3d& sun_and_moon) {
   constexpr double kMu = 3.986004418e14;
   constexpr double kRadius = 6378136.0;

@@ -23,19 +23,19 @@ KeplerEphemeris example(Satellite satellite) {
   e.clock = {7.914518937469e-05, 7.503331289627e-12, 0.0};
   e.crs = 66.3125;
   e.delta_n = 3.800515449581e-09;
-  e.M0 = -2.847044012525;
+  e.mean_anomaly = -2.847044012525;
   e.cuc = 3.425404429436e-06;
   e.eccentricity = 2.182067371905e-03;
   e.cus = 1.028738915920e-05;
   e.sqrt_a = satellite.system == SatelliteSystem::kBeidou ? 6493.4 : 5153.581537247;
   e.cic = 3.539025783539e-08;
-  e.Omega0 = 0.7091293711361;
+  e.node = 0.7091293711361;
   e.cis = -3.166496753693e-08;
-  e.i0 = 0.985;
+  e.inclination = 0.985;
   e.crc = 197.09375;
-  e.omega = -1.013858938951;
-  e.Omega_dot = -7.659961925303e-09;
-  e.i_dot = 3.478716331070e-10;
+  e.perigee = -1.013858938951;
+  e.node_rate = -7.659961925303e-09;
+  e.inclination_rate = 3.478716331070e-10;
   return e;
 }
 

@@ -280,7 +280,7 @@ TEST(RinexNavigation, EveryVersionGivesTheSameEphemeris) {
     EXPECT_EQ(e.clock[0], 7.914518937469e-05);
     EXPECT_EQ(e.issue, 56);
     EXPECT_EQ(e.sqrt_a, 5153.581537247);
-    EXPECT_EQ(e.i_dot, 3.478716331070e-10);
+    EXPECT_EQ(e.inclination_rate, 3.478716331070e-10);
     EXPECT_EQ(e.accuracy_m, 2.0);
     EXPECT_EQ(e.group_delay[0], 3.725290298462e-09);
     ASSERT_TRUE(navigation.gps_ionosphere) << name;

@@ -21,13 +21,13 @@ struct KeplerEphemeris {
   std::array<double, 3> clock{};  ///< s, s/s, s/s^2
   double sqrt_a = 0.0;            ///< sqrt(m)
   double eccentricity = 0.0;
-  double M0 = 0.0;
+  double mean_anomaly = 0.0;
   double delta_n = 0.0;  ///< rad/s
-  double omega = 0.0;    ///< argument of perigee
-  double Omega0 = 0.0;   ///< longitude of the node at the begin of the week
-  double Omega_dot = 0.0;
-  double i0 = 0.0;
-  double i_dot = 0.0;
+  double perigee = 0.0;  ///< its argument
+  double node = 0.0;     ///< longitude of the ascending node at the begin of the week
+  double node_rate = 0.0;
+  double inclination = 0.0;
+  double inclination_rate = 0.0;
   double cuc = 0.0, cus = 0.0;          ///< rad
   double crc = 0.0, crs = 0.0;          ///< m
   double cic = 0.0, cis = 0.0;          ///< rad

@@ -18,7 +18,7 @@ using record::Satellite;
 using record::SatelliteSystem;
 using record::TabulatedEphemeris;
 
-constexpr std::size_t kWidth = 19;  // of a number
+constexpr std::size_t kMessageWidth = 19;  // of a number
 constexpr std::size_t kLargestMessage = 31;
 
 /// The numbers of one message, in the order of the file, with its time.
@@ -35,6 +35,15 @@ geo::GpsTime nearest(geo::GpsTime to, double sow) {
   constexpr double kHalfWeek = 302400.0;
   const double off = std::remainder(sow - to.sow(), 2.0 * kHalfWeek);
   return to + off;
+}
+
+/// Of neighbours with the same key the first stays. @return how many went
+template <class Ephemeris, class Key>
+long drop_repeated(std::vector<Ephemeris>& all, const Key& key) {
+  const auto end = std::unique(all.begin(), all.end(), [&](const auto& a, const auto& b) { return key(a) == key(b); });
+  const auto count = static_cast<long>(all.end() - end);
+  all.erase(end, all.end());
+  return count;
 }
 
 class NavigationReader {
@@ -149,7 +158,7 @@ void NavigationReader::read_ionosphere(std::string_view line) {
   for (const std::size_t from : {1U, 0U, 0U}) {
     if (!lines_.next(line)) return;
     for (std::size_t i = from; i < 4 && at < values.size(); ++i)
-      values.at(at++) = number_field(line, 4 + kWidth * i, kWidth).value_or(0.0);
+      values.at(at++) = number_field(line, 4 + kMessageWidth * i, kMessageWidth).value_or(0.0);
   }
   if (!gps) return;
   recording_.gps_ionosphere.emplace();
@@ -182,24 +191,24 @@ std::optional<Message> NavigationReader::numbers_of(std::string_view line) {
   std::size_t next = 0;
   const auto take = [&](std::size_t at) {
     if (next < message.values.size()) {
-      const std::string_view text = trimmed(field(line, at, kWidth));
-      const auto value = number_field(line, at, kWidth);
+      const std::string_view text = trimmed(field(line, at, kMessageWidth));
+      const auto value = number_field(line, at, kMessageWidth);
       whole = whole && (value || text.empty());
       message.values.at(next) = value.value_or(0.0);
     }
     ++next;
   };
   const std::size_t first = two ? 22 : 23;
-  for (std::size_t i = 0; i < 3; ++i) take(first + kWidth * i);
+  for (std::size_t i = 0; i < 3; ++i) take(first + kMessageWidth * i);
   while (lines_.next(line)) {
-    if (line.size() < indent || trimmed(line.substr(0, indent)) != "") {
+    if (line.size() < indent || !trimmed(line.substr(0, indent)).empty()) {
       if (!trimmed(line).empty()) {
         lines_.put_back();
         break;
       }
       continue;
     }
-    for (std::size_t i = 0; i < 4; ++i) take(indent + kWidth * i);
+    for (std::size_t i = 0; i < 4; ++i) take(indent + kMessageWidth * i);
     ++message.lines;
   }
   if (whole) return message;
@@ -232,30 +241,30 @@ void NavigationReader::keep_kepler(const Message& m) {
   e.issue = static_cast<int>(std::clamp(v[3], 0.0, 4096.0));
   e.crs = v[4];
   e.delta_n = v[5];
-  e.M0 = v[6];
+  e.mean_anomaly = v[6];
   e.cuc = v[7];
   e.eccentricity = v[8];
   e.cus = v[9];
   e.sqrt_a = v[10];
   e.toe = nearest(m.t, v[11] + (beidou ? kGpsMinusBeidou : 0.0));
   e.cic = v[12];
-  e.Omega0 = v[13];
+  e.node = v[13];
   e.cis = v[14];
-  e.i0 = v[15];
+  e.inclination = v[15];
   e.crc = v[16];
-  e.omega = v[17];
-  e.Omega_dot = v[18];
-  e.i_dot = v[19];
+  e.perigee = v[17];
+  e.node_rate = v[18];
+  e.inclination_rate = v[19];
   e.sources = static_cast<int>(std::clamp(v[20], 0.0, 65535.0));
   e.accuracy_m = v[23];
   e.health = static_cast<int>(std::clamp(v[24], 0.0, 65535.0));
   e.group_delay = {v[25], v[26]};
   if (m.satellite.system == SatelliteSystem::kGps || m.satellite.system == SatelliteSystem::kQzss)
-    e.group_delay[1] = 0.0;            // there the issue of the clock stands
-  constexpr double kGround = 2500.0;   // sqrt(m): below the surface
-  constexpr double kHighest = 8000.0;  // 64 000 km
+    e.group_delay[1] = 0.0;              // there the issue of the clock stands
+  constexpr double kLeastRoot = 2500.0;  // sqrt(m): below the surface
+  constexpr double kMostRoot = 8000.0;   // 64 000 km
   constexpr double kWeek = 604800.0;
-  if (!(e.eccentricity >= 0.0 && e.eccentricity < 0.5) || !(e.sqrt_a > kGround && e.sqrt_a < kHighest) ||
+  if (!(e.eccentricity >= 0.0 && e.eccentricity < 0.5) || !(e.sqrt_a > kLeastRoot && e.sqrt_a < kMostRoot) ||
       !(v[11] >= 0.0 && v[11] <= kWeek) || !(std::abs(e.clock[0]) < 1.0)) {
     ++impossible_;
     return;
@@ -280,8 +289,10 @@ void NavigationReader::keep_tabulated(const Message& m) {
   else
     e.accuracy_m = v[10];
   if (e.channel > 128) e.channel -= 256;  // some programs write the byte without its sign
-  constexpr double kLowest = 7e6, kHighest = 6e7, kFastest = 1e4;
-  if (!(e.r_e.norm() > kLowest && e.r_e.norm() < kHighest) || !(e.v_e.norm() < kFastest) || !(e.a_e.norm() < 1.0) ||
+  constexpr double kNearest = 7e6;        // m
+  constexpr double kFarthest = 6e7;       // m
+  constexpr double kFastest = 1e4;        // m/s
+  if (!(e.r_e.norm() > kNearest && e.r_e.norm() < kFarthest) || !(e.v_e.norm() < kFastest) || !(e.a_e.norm() < 1.0) ||
       !(std::abs(e.clock_bias) < 1.0)) {
     ++impossible_;
     return;
@@ -292,13 +303,9 @@ void NavigationReader::keep_tabulated(const Message& m) {
 void NavigationReader::sort_out() {
   const auto kepler_key = [](const KeplerEphemeris& e) { return std::tuple(e.satellite, e.toe, e.sources, e.issue, e.toc); };
   std::ranges::stable_sort(recording_.kepler, {}, kepler_key);
-  const auto same_kepler = std::ranges::unique(recording_.kepler, {}, kepler_key);
   const auto tabulated_key = [](const TabulatedEphemeris& e) { return std::tuple(e.satellite, e.t); };
   std::ranges::stable_sort(recording_.tabulated, {}, tabulated_key);
-  const auto same_tabulated = std::ranges::unique(recording_.tabulated, {}, tabulated_key);
-  repeated_ = static_cast<long>(same_kepler.size() + same_tabulated.size());
-  recording_.kepler.erase(same_kepler.begin(), same_kepler.end());
-  recording_.tabulated.erase(same_tabulated.begin(), same_tabulated.end());
+  repeated_ = drop_repeated(recording_.kepler, kepler_key) + drop_repeated(recording_.tabulated, tabulated_key);
 }
 
 void NavigationReader::report() {
@@ -309,11 +316,12 @@ void NavigationReader::report() {
                                  fmt::format("{}: {} message{} {}", recording_.source, number, number == 1 ? "" : "s", what),
                                  std::nullopt, number});
   };
-  using Severity = record::Event::Severity;
-  add(spoiled_, "navigation_spoiled", "that cannot be read left out", Severity::kWarning);
-  add(impossible_, "navigation_impossible", "with an orbit or a clock that cannot be left out", Severity::kWarning);
-  add(unknown_, "navigation_unknown", "of a kind that is not used", Severity::kInfo);
-  add(repeated_, "navigation_repeated", "that repeat another left out", Severity::kInfo);
+  const auto warning = record::Event::Severity::kWarning;
+  const auto info = record::Event::Severity::kInfo;
+  add(spoiled_, "navigation_spoiled", "that cannot be read left out", warning);
+  add(impossible_, "navigation_impossible", "with an orbit or a clock that cannot be left out", warning);
+  add(unknown_, "navigation_unknown", "of a kind that is not used", info);
+  add(repeated_, "navigation_repeated", "that repeat another left out", info);
 }
 
 }  // namespace

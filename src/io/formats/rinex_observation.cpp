@@ -17,7 +17,7 @@ using record::Satellite;
 using record::SatelliteSystem;
 using record::Signal;
 
-constexpr std::size_t kWidth = 16;  // of a number with its two flags
+constexpr std::size_t kObservationWidth = 16;  // of a number with its two flags
 
 /// What one column of a satellite's record holds.
 struct ObservationType {
@@ -36,8 +36,7 @@ struct SystemTypes {
     for (const auto& [quantity, signal] : types)
       if (quantity != ' ') signals.push_back(signal);
     std::ranges::sort(signals);
-    const auto repeated = std::ranges::unique(signals);
-    signals.erase(repeated.begin(), repeated.end());
+    signals.erase(std::unique(signals.begin(), signals.end()), signals.end());
     for (const auto& [quantity, signal] : types)
       columns.push_back({quantity, static_cast<std::size_t>(std::ranges::lower_bound(signals, signal) - signals.begin())});
   }
@@ -305,7 +304,7 @@ bool ObservationReader::read_records2(const std::vector<std::string>& ids, bool 
     begin_satellite(satellite_field(id, system_ == 'M' ? 'G' : system_));
     for (std::size_t i = 0; i < types2_.size(); ++i) {
       if (i % kPerLine == 0 && !lines_.next(line)) return false;
-      take(line, kWidth * (i % kPerLine), i);
+      take(line, kObservationWidth * (i % kPerLine), i);
     }
     end_satellite(power_failure);
   }
@@ -324,7 +323,7 @@ bool ObservationReader::read_records3(std::size_t satellites, bool power_failure
     begin_satellite(satellite_field(field(line, 0, 3), system_));
     if (satellite_) {
       const std::size_t columns = types_.at(static_cast<std::size_t>(satellite_->system)).columns.size();
-      for (std::size_t i = 0; i < columns; ++i) take(line, 3 + kWidth * i, i);
+      for (std::size_t i = 0; i < columns; ++i) take(line, 3 + kObservationWidth * i, i);
     }
     end_satellite(power_failure);
   }

@@ -64,18 +64,19 @@ class Sp3Reader {
     constexpr double kKilometre = 1000.0;
     constexpr double kMicrosecond = 1e-6;
     constexpr double kNoClock = 999999.0;
-    constexpr std::size_t kWidth = 14;
+    constexpr std::size_t kColumn = 14;
     const auto satellite = satellite_field(field(line, 1, 3), 'G');
-    const auto x = number_field(line, 4, kWidth), y = number_field(line, 4 + kWidth, kWidth);
-    const auto z = number_field(line, 4 + 2 * kWidth, kWidth), clock = number_field(line, 4 + 3 * kWidth, kWidth);
-    constexpr double kLowest = 6.4e6, kHighest = 1e8;
+    const auto x = number_field(line, 4, kColumn), y = number_field(line, 4 + kColumn, kColumn);
+    const auto z = number_field(line, 4 + 2 * kColumn, kColumn), clock = number_field(line, 4 + 3 * kColumn, kColumn);
+    constexpr double kGround = 6.4e6;  // m
+    constexpr double kBeyond = 1e8;    // m
     if (!epoch_ || !satellite || !x || !y || !z) {
       ++spoiled_;
       return;
     }
     record::OrbitPoint point{*epoch_, kKilometre * Eigen::Vector3d(*x, *y, *z), {}};
     if (point.r_e.isZero()) return;  // bad or absent
-    if (point.r_e.norm() < kLowest || point.r_e.norm() > kHighest) {
+    if (point.r_e.norm() < kGround || point.r_e.norm() > kBeyond) {
       ++spoiled_;
       return;
     }
@@ -101,8 +102,8 @@ record::PreciseOrbits read_sp3(const std::vector<std::filesystem::path>& files) 
   }
   for (auto& [satellite, points] : orbits.points) {
     std::ranges::stable_sort(points, {}, &record::OrbitPoint::t);
-    const auto repeated = std::ranges::unique(points, {}, &record::OrbitPoint::t);
-    points.erase(repeated.begin(), repeated.end());
+    const auto same = [](const record::OrbitPoint& a, const record::OrbitPoint& b) { return a.t == b.t; };
+    points.erase(std::unique(points.begin(), points.end(), same), points.end());
   }
   return orbits;
 }
