@@ -9,11 +9,6 @@ namespace coast::noise {
 
 namespace {
 
-constexpr double kManySamples = 40000.0;  // shorter records are followed as they are
-constexpr double kEnough = 8000.0;        // block means: level and drift live at the slow end
-constexpr double kFarthest = 50.0;        // standard deviations; as good as not bounded
-constexpr double kTolerance = 5e-4;       // of log-likelihood: 3e-4 of the root
-
 /// One coefficient of one record's mean.
 struct Place {
   std::size_t record = 0;
@@ -66,6 +61,8 @@ class HeldMean {
 };
 
 ProfileInterval interval_of(const Likelihood& likelihood, const Fit& top, Place place, double at) {
+  constexpr double kFarthest = 50.0;   // standard deviations; as good as not bounded
+  constexpr double kTolerance = 5e-4;  // of log-likelihood: 3e-4 of the root
   const std::vector<Interval> ranges = likelihood.model().ranges(likelihood.scale());
   const MeanEstimate mean = likelihood.value(top.u).means.at(place.record);
   const double centre = mean.value(place.coefficient);
@@ -89,6 +86,8 @@ ProfileInterval interval_of(const Likelihood& likelihood, const Fit& top, Place 
 }  // namespace
 
 std::vector<std::vector<ProfileInterval>> mean_intervals(const Likelihood& likelihood, const Fit& fit) {
+  constexpr double kManySamples = 40000.0;  // shorter records are followed as they are
+  constexpr double kEnough = 8000.0;        // block means: level and drift live at the slow end
   const std::vector<MeanEstimate> means = likelihood.value(fit.u).means;
   // A record shorter than a block would be missing among the blocks.
   const std::optional<Likelihood> blocks =
