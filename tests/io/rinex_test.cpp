@@ -233,7 +233,8 @@ TEST(RinexObservation, SpoiledCompactFilesAreRefusedWithTheirLine) {
   EXPECT_EQ(said(text), "");
   std::string spoiled = text;
   spoiled.replace(spoiled.find("3&212"), 5, "x&212");
-  EXPECT_NE(said(spoiled).find("x.crx:8: 'x&21243381127', expected an order of differences"), std::string::npos) << said(spoiled);
+  EXPECT_NE(said(spoiled).find("x.crx:8: 'x&21243381127', expected an order of differences"), std::string::npos)
+      << said(spoiled);
   spoiled = text;
   spoiled.replace(spoiled.find("3&212"), 5, "21212");
   EXPECT_NE(said(spoiled).find("a number that a series begins with"), std::string::npos);
