@@ -1,0 +1,41 @@
+#pragma once
+// What the air does to a signal on its way down.
+
+#include <array>
+
+#include "coast/geo/earth.hpp"
+#include "coast/geo/time.hpp"
+#include "coast/record/navigation.hpp"
+
+namespace coast::carrier {
+
+/// Where a satellite stands in the sky of a receiver.
+struct Direction {
+  double azimuth = 0.0;    ///< rad, from north over east, [0, 2 pi)
+  double elevation = 0.0;  ///< rad, [-pi/2, pi/2]
+};
+[[nodiscard]] Direction direction_of(const Eigen::Vector3d& r_satellite_e, const Eigen::Vector3d& r_receiver_e);
+
+/// Ionospheric delay of a code on L1 (1575.42 MHz), m; a phase is advanced by as much, other frequencies f by (f1/f)^2
+/// (Klobuchar 1987; IS-GPS-200 20.3.3.5.2.5). About half of the delay, no more.
+[[nodiscard]] double klobuchar_delay(const record::Klobuchar& model, const geo::Geodetic& receiver, const Direction& direction,
+                                     geo::GpsTime t);
+
+/// Delay at the zenith, m.
+struct ZenithDelay {
+  double hydrostatic = 0.0;
+  double wet = 0.0;
+};
+/// Saastamoinen (1972) with the pressure, temperature and humidity of a standard atmosphere (ISO 2533, 70 % at sea level): good
+/// to 1 cm hydrostatic in fair weather, 5 cm wet. Heights beyond 10 km above or 500 m below the ellipsoid are taken as these.
+[[nodiscard]] ZenithDelay standard_zenith_delay(const geo::Geodetic& receiver);
+
+/// How much more air the signal passes than one from the zenith (Niell 1996), down to 3 degrees of elevation.
+struct TroposphericMapping {
+  double hydrostatic = 1.0;
+  double wet = 1.0;
+};
+/// @throws std::invalid_argument  an elevation below 1 degree
+[[nodiscard]] TroposphericMapping niell_mapping(const geo::Geodetic& receiver, double elevation, geo::GpsTime t);
+
+}  // namespace coast::carrier
