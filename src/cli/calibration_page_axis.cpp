@@ -22,12 +22,14 @@ std::string optional_figure(const std::optional<double>& value) {
 report::Note outlier_note(const noise::AxisCalibration& r) {
   const noise::Outlier& worst =
       *std::ranges::max_element(r.outliers, {}, [](const noise::Outlier& o) { return std::abs(o.sigmas); });
+  const auto excluded = std::ranges::count_if(r.outliers, &noise::Outlier::excluded);
   return {report::Note::Kind::kWarning, fmt::format("{} outlier{}", r.outliers.size(), r.outliers.size() == 1 ? "" : "s"),
           fmt::format("Standardised innovations beyond what one clean record in a hundred shows; the largest, {:.1f} sigma, at "
-                      "{:.2f} s. They were {}.",
+                      "{:.2f} s. {}. `outliers: keep` or `outliers: exclude` in the calibration file decides for all.",
                       worst.sigmas, worst.time_s,
-                      worst.excluded ? "left out and everything was estimated again"
-                                     : "kept, as they are too few to matter; `outliers: exclude` leaves them out")};
+                      excluded > 0 ? fmt::format("{} of {} were left out and everything was estimated again", excluded,
+                                                 r.outliers.size())
+                                   : "They were kept")};
 }
 
 /// The two ways to the maximum have to agree.

@@ -1,6 +1,8 @@
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
+#include <filesystem>
 
 #include "calibration_result.hpp"
 #include "calibration_units.hpp"
@@ -36,14 +38,16 @@ std::string calibration_text(const CalibrationResult& result) {
     if (!r.band.tau.empty())
       text += fmt::format("  Allan curve {} the 95 % band of the estimate\n", r.band.inside ? "inside" : "OUTSIDE");
     if (!r.outliers.empty())
-      text += fmt::format("  {} outlier{} {}\n", r.outliers.size(), r.outliers.size() == 1 ? "" : "s",
-                          r.outliers.front().excluded ? "left out" : "kept");
+      text += fmt::format("  {} outlier{}, {} left out\n", r.outliers.size(), r.outliers.size() == 1 ? "" : "s",
+                          std::ranges::count_if(r.outliers, &noise::Outlier::excluded));
     if (r.common_parameters_p)
       text += fmt::format("  one set of parameters for all records: p = {:.2g}\n", *r.common_parameters_p);
     for (const TestedRecord& tested : axis.tests)
-      text += fmt::format("  on {}: variance of innovations {:.3f}, Allan curve {} the band\n",
+      text += fmt::format("  on {}: variance of innovations {:.3f}{}\n",
                           std::filesystem::path(tested.source).filename().string(), tested.test.innovation_variance,
-                          tested.test.band.inside ? "inside" : "OUTSIDE");
+                          tested.test.band.tau.empty() ? ""
+                          : tested.test.band.inside    ? ", Allan curve inside the band"
+                                                       : ", Allan curve OUTSIDE the band");
     for (const std::string& remark : r.remarks) text += fmt::format("  {}\n", remark);
   }
   return text;

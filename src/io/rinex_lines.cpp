@@ -75,6 +75,17 @@ std::string_view label_of(std::string_view line) {
   return trimmed(field(line, 60, 20));
 }
 
+RinexKind read_kind(RinexLines& lines) {
+  std::string_view line;
+  if (!lines.next(line) || label_of(line) != "RINEX VERSION / TYPE")
+    lines.refuse(in_quotes(line), "RINEX VERSION / TYPE in columns 61 to 80 of the first line", "This is no RINEX file.");
+  const auto version = number_field(line, 0, 9);
+  if (!version || *version < 2.0 || *version >= 5.0)
+    lines.refuse(fmt::format("RINEX version {}", in_quotes(trimmed(field(line, 0, 9)))), "2.0 to 4.x");
+  const auto letter = [&](std::size_t at) { return at < line.size() ? line[at] : ' '; };
+  return {static_cast<int>(*version), letter(20), letter(40), in_quotes(trimmed(field(line, 20, 20)))};
+}
+
 std::optional<record::Satellite> satellite_field(std::string_view text, char system) {
   if (text.size() < 2) return std::nullopt;
   if (text.size() > 2 && text[0] != ' ') {

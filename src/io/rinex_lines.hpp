@@ -43,6 +43,16 @@ class RinexLines {
 /// Columns 61 to 80 of a header line.
 [[nodiscard]] std::string_view label_of(std::string_view line);
 
+/// What the first line of a RINEX file says.
+struct RinexKind {
+  int major = 0;       ///< version: 2, 3 or 4
+  char type = ' ';     ///< 'O' observations, 'N' navigation messages; of version 2 also 'G' and 'H'
+  char system = ' ';   ///< of all satellites, 'M' for several
+  std::string stated;  ///< the type in the file's words, for messages
+};
+/// @throws InputError  the first line is not of RINEX, or of a version that is not known
+[[nodiscard]] RinexKind read_kind(RinexLines& lines);
+
 /// "G05", "G 5", " 5" (of `system`)
 [[nodiscard]] std::optional<record::Satellite> satellite_field(std::string_view text, char system);
 

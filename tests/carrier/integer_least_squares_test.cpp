@@ -15,7 +15,7 @@
 namespace coast::carrier {
 namespace {
 
-// de Jonge and Tiberius (1996), The LAMBDA method for integer ambiguity estimation: implementation aspects, section 4.6.
+// de Jonge and Tiberius (1996), The LAMBDA method for integer ambiguity estimation: implementation aspects.
 TEST(IntegerLeastSquares, PublishedExample) {
   Eigen::Matrix3d Q;
   Q << 6.290, 5.978, 0.544, 5.978, 6.292, 2.340, 0.544, 2.340, 6.288;

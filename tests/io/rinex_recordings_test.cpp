@@ -68,7 +68,7 @@ TEST_F(RinexRecordings, StationDayInCompactForm) {
   const auto recording = observations("rinex-esbc-2020-177/ESBC00DNK_R_20201770000_01D_30S_MO.crx.gz");
   ASSERT_EQ(recording.epochs.size(), 2880U);
   EXPECT_EQ(satellites(recording.epochs.front()), 43U);
-  EXPECT_EQ(recording.epochs.front().observations.size() > 100U, true);
+  EXPECT_GT(recording.epochs.front().observations.size(), 100U);
   const auto& first = recording.epochs.front().observations;
   const auto c05 = std::ranges::find_if(first, [](const Observation& o) {
     return o.satellite == Satellite{SatelliteSystem::kBeidou, 5} && o.signal == record::Signal{'2', 'I'};

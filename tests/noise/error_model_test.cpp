@@ -141,15 +141,14 @@ TEST(ErrorModel, SpoiledFilesAreRefusedWithTheirLine) {
 TEST(ErrorModel, EveryShippedProfileLoads) {
   const std::filesystem::path folder = std::filesystem::path(COAST_SOURCE_DIR) / "configs/imu";
   int count = 0;
-  if (std::filesystem::exists(folder))
-    for (const auto& entry : std::filesystem::directory_iterator(folder)) {
-      if (entry.path().extension() != ".yaml") continue;
-      ++count;
-      const auto model = noise::ImuErrorModel::from(io::load_yaml(entry.path()));
-      for (const Sensor sensor : {Sensor::kGyro, Sensor::kAccel})
-        for (int axis = 0; axis < 3; ++axis) EXPECT_GT(model.white_density(sensor, axis).value, 0.0) << entry.path();
-    }
-  if (count == 0) GTEST_SKIP() << "no profiles in " << folder;
+  for (const auto& entry : std::filesystem::directory_iterator(folder)) {
+    if (entry.path().extension() != ".yaml") continue;
+    ++count;
+    const auto model = noise::ImuErrorModel::from(io::load_yaml(entry.path()));
+    for (const Sensor sensor : {Sensor::kGyro, Sensor::kAccel})
+      for (int axis = 0; axis < 3; ++axis) EXPECT_GT(model.white_density(sensor, axis).value, 0.0) << entry.path();
+  }
+  EXPECT_GT(count, 10);
 }
 
 }  // namespace

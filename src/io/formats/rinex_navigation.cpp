@@ -84,18 +84,13 @@ class NavigationReader {
 };
 
 void NavigationReader::read_header() {
-  std::string_view line;
-  if (!lines_.next(line) || label_of(line) != "RINEX VERSION / TYPE")
-    lines_.refuse(in_quotes(line), "RINEX VERSION / TYPE in columns 61 to 80 of the first line", "This is no RINEX file.");
-  const auto version = number_field(line, 0, 9);
-  if (!version || *version < 2.0 || *version >= 5.0)
-    lines_.refuse(fmt::format("RINEX version {}", in_quotes(trimmed(field(line, 0, 9)))), "2.0 to 4.x");
-  major_ = static_cast<int>(*version);
-  const char type = line.size() > 20 ? line[20] : ' ';
-  if (type != 'N' && !(major_ == 2 && (type == 'G' || type == 'H')))
-    lines_.refuse(fmt::format("a file of type {}", in_quotes(trimmed(field(line, 20, 20)))), "navigation messages",
+  const RinexKind kind = read_kind(lines_);
+  major_ = kind.major;
+  if (kind.type != 'N' && !(major_ == 2 && (kind.type == 'G' || kind.type == 'H')))
+    lines_.refuse(fmt::format("a file of type {}", kind.stated), "navigation messages",
                   "Observations belong under `rover` and `base`.");
-  if (major_ == 2) system_ = type == 'G' ? 'R' : type == 'H' ? 'S' : 'G';
+  if (major_ == 2) system_ = kind.type == 'G' ? 'R' : kind.type == 'H' ? 'S' : 'G';
+  std::string_view line;
   while (lines_.next(line)) {
     const std::string_view label = label_of(line);
     if (label == "END OF HEADER") return;

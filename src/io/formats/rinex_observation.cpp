@@ -125,24 +125,14 @@ class ObservationReader {
 };
 
 void ObservationReader::read_header() {
+  const RinexKind kind = read_kind(lines_);
+  if (kind.type != 'O')
+    lines_.refuse(fmt::format("a file of type {}", kind.stated), "observations", "Navigation files belong under `nav`.");
+  major_ = kind.major;
+  system_ = kind.system;
   std::string_view line;
-  bool first = true;
   while (lines_.next(line)) {
     const std::string_view label = label_of(line);
-    if (first) {
-      if (label != "RINEX VERSION / TYPE")
-        lines_.refuse(in_quotes(line), "RINEX VERSION / TYPE in columns 61 to 80 of the first line", "This is no RINEX file.");
-      const auto version = number_field(line, 0, 9);
-      if (!version || *version < 2.0 || *version >= 5.0)
-        lines_.refuse(fmt::format("RINEX version {}", in_quotes(trimmed(field(line, 0, 9)))), "2.0 to 4.x");
-      major_ = static_cast<int>(*version);
-      if (field(line, 20, 1) != "O")
-        lines_.refuse(fmt::format("a file of type {}", in_quotes(trimmed(field(line, 20, 20)))), "observations",
-                      "Navigation files belong under `nav`.");
-      system_ = line.size() > 40 ? line[40] : ' ';
-      first = false;
-      continue;
-    }
     if (label == "END OF HEADER") {
       check_header();
       return;
