@@ -7,6 +7,7 @@
 #include "coast/geo/units.hpp"
 #include "coast/io/yaml.hpp"
 #include "commands.hpp"
+#include "indented.hpp"
 
 namespace coast::cli {
 
@@ -139,10 +140,7 @@ CalibrationConfig from_yaml(const std::filesystem::path& file) {
 }  // namespace
 
 std::string calibration_example(const std::string& indent) {
-  std::string text = indent;
-  for (const char c : kCalibrationExample.substr(0, kCalibrationExample.size() - 1))
-    text += c == '\n' ? "\n" + indent : std::string(1, c);
-  return text;
+  return indented(kCalibrationExample, indent);
 }
 
 std::string SensorAxis::title() const {

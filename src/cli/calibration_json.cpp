@@ -9,6 +9,7 @@
 
 #include "calibration_result.hpp"
 #include "calibration_units.hpp"
+#include "error_json.hpp"
 
 namespace coast::cli {
 
@@ -193,12 +194,7 @@ std::string calibration_json(const CalibrationConfig& config, const CalibrationR
   j["records"] = Json::array();
   for (const ReadRecord& r : result.records) j["records"].push_back(record_json(r));
   for (const ReadRecord& r : result.tested_on) j["tested_on"].push_back(record_json(r));
-  j["events"] = Json::array();
-  for (const record::Event& event : result.events)
-    j["events"].push_back({{"severity", event.severity == record::Event::Severity::kWarning ? "warning" : "info"},
-                           {"kind", event.kind},
-                           {"text", event.text},
-                           {"count", event.count}});
+  j["events"] = events_json(result.events);
   j["axes"] = Json::array();
   for (const CalibratedAxis& axis : result.axes) j["axes"].push_back(axis_json(axis));
   j["files"] = {{"error_model", "error_model.yaml"}, {"report", "report.html"}};

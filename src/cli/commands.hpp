@@ -33,6 +33,10 @@ void estimator_study(const std::filesystem::path& study_yaml, const CommonOption
 [[nodiscard]] std::string estimator_study_example(const std::string& indent);
 /// The calibration.yaml of the help page, every line behind `indent`.
 [[nodiscard]] std::string calibration_example(const std::string& indent);
+/// `coast ppk run.yaml`: RINEX of rover and base -> ppk.pos, ppk.json, residuals.csv, report.html.
+void ppk(const std::filesystem::path& input, const CommonOptions& options);
+/// The ppk.yaml of the help page, every line behind `indent`.
+[[nodiscard]] std::string ppk_example(const std::string& indent);
 /// `coast compare a.nav b.nav`: differences a - b in N, E, D and attitude.
 void compare(const std::filesystem::path& a, const std::filesystem::path& b, const Eigen::Vector3d& lever_arm_b,
              const CommonOptions& options);

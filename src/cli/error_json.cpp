@@ -22,4 +22,18 @@ nlohmann::ordered_json error_json(const study::ErrorSummary& errors) {
   return j;
 }
 
+nlohmann::ordered_json events_json(const record::Events& events) {
+  auto list = nlohmann::ordered_json::array();
+  for (const record::Event& event : events) {
+    nlohmann::ordered_json j;
+    j["severity"] = event.severity == record::Event::Severity::kWarning ? "warning" : "info";
+    j["kind"] = event.kind;
+    j["text"] = event.text;
+    if (event.time) j["time_s"] = event.time->sow();
+    j["count"] = event.count;
+    list.push_back(j);
+  }
+  return list;
+}
+
 }  // namespace coast::cli

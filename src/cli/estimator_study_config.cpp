@@ -9,6 +9,7 @@
 #include "coast/noise/gauss_markov.hpp"
 #include "coast/noise/partial_autocorrelation.hpp"
 #include "commands.hpp"
+#include "indented.hpp"
 
 namespace coast::cli {
 
@@ -219,9 +220,7 @@ EstimatorStudyConfig read_estimator_study(const std::filesystem::path& file) {
 }
 
 std::string estimator_study_example(const std::string& indent) {
-  std::string text = indent;
-  for (const char c : kStudyExample.substr(0, kStudyExample.size() - 1)) text += c == '\n' ? "\n" + indent : std::string(1, c);
-  return text;
+  return indented(kStudyExample, indent);
 }
 
 }  // namespace coast::cli

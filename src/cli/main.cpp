@@ -75,6 +75,11 @@ int run(int argc, char** argv) {
 
   add_calibrate(app, input, common);
 
+  auto* ppk = subcommand(app, "ppk", "RINEX of rover and base -> fixed carrier-phase positions", "", common);
+  ppk->add_option("input", input, "run.yaml with gnss: {ppk: ..}, or ppk.yaml")->required();
+  ppk->footer(fmt::format("Example:\n  coast ppk ppk.yaml --out positions\n\nppk.yaml:\n{}", coast::cli::ppk_example("  ")));
+  ppk->callback([&] { coast::cli::ppk(input, common); });
+
   auto* compare = subcommand(app, "compare", "two trajectories: N, E, D and attitude differences, first minus second",
                              "coast compare results/trajectory.nav truth.nav", common);
   compare->add_option("first", input, ".nav, CSV or SBET")->required();

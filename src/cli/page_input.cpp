@@ -27,13 +27,15 @@ report::Table recording_table(const ProcessPage& page) {
   return table;
 }
 
-report::Table event_table(const ProcessPage& page) {
+}  // namespace
+
+report::Table event_table(const record::Events& events) {
   report::Table table;
   table.id = "events";
   table.title = "Events";
   table.caption = "Everything that was repaired, bridged, refused or doubted; nothing is repaired in silence.";
   table.columns = {{"", "", false}, {"kind", "", false}, {"what", "", false}, {"first at", "s of week"}, {"count", ""}};
-  for (const record::Event& event : page.result.events) {
+  for (const record::Event& event : events) {
     const bool warning = event.severity == record::Event::Severity::kWarning;
     auto row = cells({warning ? "warning" : "note", event.kind, event.text,
                       event.time ? fmt::format("{:.3f}", event.time->sow()) : "", fmt::format("{}", event.count)});
@@ -42,8 +44,6 @@ report::Table event_table(const ProcessPage& page) {
   }
   return table;
 }
-
-}  // namespace
 
 report::Section input_section(const ProcessPage& page) {
   report::Section section;
@@ -59,7 +59,7 @@ report::Section input_section(const ProcessPage& page) {
   }
   if (!page.result.alignment.empty()) section.notes.push_back({report::Note::Kind::kInfo, "Start", page.result.alignment});
   section.tables.push_back(recording_table(page));
-  if (!page.result.events.empty()) section.tables.push_back(event_table(page));
+  if (!page.result.events.empty()) section.tables.push_back(event_table(page.result.events));
   return section;
 }
 

@@ -36,6 +36,7 @@ namespace coast::cli {
 void add_sweep(const ProcessPage& page, report::Section& section);
 /// Noise found by innovation likelihood: table and plain sentences.
 void add_noise_fit(const ProcessPage& page, report::Section& section);
+[[nodiscard]] report::Table event_table(const record::Events& events);
 
 // --- numbers for people
 

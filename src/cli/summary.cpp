@@ -39,20 +39,6 @@ Json outage_json(const study::OutageResult& o, const std::string& compared_with)
   return j;
 }
 
-Json events_json(const record::Events& events) {
-  Json list = Json::array();
-  for (const record::Event& event : events) {
-    Json j;
-    j["severity"] = event.severity == record::Event::Severity::kWarning ? "warning" : "info";
-    j["kind"] = event.kind;
-    j["text"] = event.text;
-    if (event.time) j["time_s"] = event.time->sow();
-    j["count"] = event.count;
-    list.push_back(j);
-  }
-  return list;
-}
-
 Json sweep_json(const std::vector<study::OutageResult>& sweep, const std::string& compared_with) {
   Json list = Json::array();
   for (const DriftRow& row : drift_table(sweep)) {

@@ -23,16 +23,24 @@ struct SatelliteState {
 /// GLONASS: ICD 5.1 annex A.3.1.2, Runge-Kutta of fourth order over at most 60 s a step; SBAS: RTCA DO-229 A.4.4.11.
 [[nodiscard]] SatelliteState satellite_state(const record::TabulatedEphemeris& ephemeris, geo::GpsTime t);
 
+/// Where the satellites of a mission are, by whatever tells it.
+class Orbits {
+ public:
+  virtual ~Orbits() = default;
+  /// @param t  of transmission, GPS time; none where nothing is known of the satellite then
+  [[nodiscard]] virtual std::optional<SatelliteState> at(record::Satellite satellite, geo::GpsTime t) const = 0;
+};
+
 /// The broadcast ephemerides of a mission. Unhealthy satellites have none. An ephemeris that puts its satellite elsewhere (100
 /// km) than the one before and the one after it, which agree with each other, was filed under a wrong number or is damaged: it
 /// is left out, with an event.
-class BroadcastOrbits {
+class BroadcastOrbits : public Orbits {
  public:
   explicit BroadcastOrbits(const record::NavigationRecording& navigation);
 
   /// By the ephemeris nearest in time that is valid (2 h of GPS and QZSS, 15 min of GLONASS, 6 min of SBAS; Galileo 4 h and
   /// BeiDou 1 h behind the reference, a quarter of that before it); of Galileo I/NAV where both are there.
-  [[nodiscard]] std::optional<SatelliteState> at(record::Satellite satellite, geo::GpsTime t) const;
+  [[nodiscard]] std::optional<SatelliteState> at(record::Satellite satellite, geo::GpsTime t) const override;
   /// The ephemeris that `at` would use, of the Keplerian ones: for group delays, accuracy and issue.
   [[nodiscard]] const record::KeplerEphemeris* kepler_at(record::Satellite satellite, geo::GpsTime t) const;
   [[nodiscard]] const record::TabulatedEphemeris* tabulated_at(record::Satellite satellite, geo::GpsTime t) const;

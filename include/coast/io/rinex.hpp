@@ -3,6 +3,7 @@
 // 4.01). Files may be gzip-compressed and, observations, Hatanaka-compressed (Hatanaka 2008: CRINEX 1.0 and 3.0).
 
 #include <filesystem>
+#include <vector>
 
 #include "coast/record/navigation.hpp"
 #include "coast/record/observation.hpp"
@@ -22,5 +23,8 @@ namespace coast::io {
 /// eccentricity above 0.5, an orbit below the ground) are left out and counted.
 /// @throws InputError  no RINEX navigation file, or nothing in it that can be used
 [[nodiscard]] record::NavigationRecording read_navigation(const std::filesystem::path& file);
+/// Several files as one: one of each system, one of each day. The first file's ionosphere stands.
+/// @throws InputError  as above, of any of them
+[[nodiscard]] record::NavigationRecording read_navigation(const std::vector<std::filesystem::path>& files);
 
 }  // namespace coast::io

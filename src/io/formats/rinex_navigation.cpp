@@ -46,6 +46,15 @@ long drop_repeated(std::vector<Ephemeris>& all, const Key& key) {
   return count;
 }
 
+/// By satellite and time.  @return how many stood twice
+long sort_out(record::NavigationRecording& recording) {
+  const auto kepler_key = [](const KeplerEphemeris& e) { return std::tuple(e.satellite, e.toe, e.sources, e.issue, e.toc); };
+  std::ranges::stable_sort(recording.kepler, {}, kepler_key);
+  const auto tabulated_key = [](const TabulatedEphemeris& e) { return std::tuple(e.satellite, e.t); };
+  std::ranges::stable_sort(recording.tabulated, {}, tabulated_key);
+  return drop_repeated(recording.kepler, kepler_key) + drop_repeated(recording.tabulated, tabulated_key);
+}
+
 class NavigationReader {
  public:
   explicit NavigationReader(const std::filesystem::path& file) : lines_(file) {}
@@ -55,7 +64,7 @@ class NavigationReader {
     read_header();
     while (read_message()) {
     }
-    sort_out();
+    repeated_ = sort_out(recording_);
     if (recording_.kepler.empty() && recording_.tabulated.empty())
       lines_.refuse("no ephemeris that can be used", "at least one");
     report();
@@ -73,7 +82,6 @@ class NavigationReader {
   void keep(const Message& m);
   void keep_kepler(const Message& m);
   void keep_tabulated(const Message& m);
-  void sort_out();
   void report();
 
   RinexLines lines_;
@@ -295,14 +303,6 @@ void NavigationReader::keep_tabulated(const Message& m) {
   recording_.tabulated.push_back(e);
 }
 
-void NavigationReader::sort_out() {
-  const auto kepler_key = [](const KeplerEphemeris& e) { return std::tuple(e.satellite, e.toe, e.sources, e.issue, e.toc); };
-  std::ranges::stable_sort(recording_.kepler, {}, kepler_key);
-  const auto tabulated_key = [](const TabulatedEphemeris& e) { return std::tuple(e.satellite, e.t); };
-  std::ranges::stable_sort(recording_.tabulated, {}, tabulated_key);
-  repeated_ = drop_repeated(recording_.kepler, kepler_key) + drop_repeated(recording_.tabulated, tabulated_key);
-}
-
 void NavigationReader::report() {
   recording_.events = lines_.events();
   const auto add = [&](long number, const char* kind, const char* what, record::Event::Severity severity) {
@@ -323,6 +323,20 @@ void NavigationReader::report() {
 
 record::NavigationRecording read_navigation(const std::filesystem::path& file) {
   return NavigationReader(file).read();
+}
+
+record::NavigationRecording read_navigation(const std::vector<std::filesystem::path>& files) {
+  record::NavigationRecording all;
+  for (const std::filesystem::path& file : files) {
+    record::NavigationRecording one = read_navigation(file);
+    std::ranges::move(one.kepler, std::back_inserter(all.kepler));
+    std::ranges::move(one.tabulated, std::back_inserter(all.tabulated));
+    std::ranges::move(one.events, std::back_inserter(all.events));
+    if (!all.gps_ionosphere) all.gps_ionosphere = one.gps_ionosphere;
+    all.source += (all.source.empty() ? "" : ", ") + one.source;
+  }
+  static_cast<void>(sort_out(all));  // days overlap
+  return all;
 }
 
 }  // namespace coast::io

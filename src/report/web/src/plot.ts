@@ -240,7 +240,7 @@ export class PlotView implements Member {
       drawBounds(f, stored.bounds ?? []);
       drawIntervalLabels(f, stored.intervals ?? []);
       drawMarks(f, stored.marks ?? []);
-      if (this.isPlan) drawScaleBar(f);
+      if (this.isPlan && this.stored.x.unit === "m") drawScaleBar(f);
     });
     Object.assign(this.host.dataset, { xMin: f.x.min, xMax: f.x.max, yMin: f.y.min, yMax: f.y.max, drawMs: performance.now() - began });
   }

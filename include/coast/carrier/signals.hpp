@@ -1,0 +1,18 @@
+#pragma once
+// Frequencies of the satellites' signals.
+
+#include <optional>
+
+#include "coast/record/satellite.hpp"
+
+namespace coast::carrier {
+
+inline constexpr double kSpeedOfLight = 299792458.0;  ///< m/s
+inline constexpr double kL1Frequency = 1575.42e6;     ///< Hz: what ionospheric delays refer to
+
+/// Carrier frequency, Hz, by the band numbers of RINEX 3 (RINEX 3.05, tables 4 to 10); none for a band that the system does not
+/// have.
+/// @param glonass_channel  -7 to 13; of bands 1 and 2 of GLONASS only
+[[nodiscard]] std::optional<double> carrier_frequency(record::SatelliteSystem system, char band, int glonass_channel = 0);
+
+}  // namespace coast::carrier

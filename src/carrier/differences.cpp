@@ -1,0 +1,185 @@
+#include "coast/carrier/differences.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "coast/carrier/signals.hpp"
+#include "cycle_slips.hpp"
+#include "receiver_track.hpp"
+
+namespace coast::carrier {
+
+namespace {
+
+using record::Satellite;
+
+/// What the base's observations of one satellite differ from the model at its position.
+struct BaseSatellite {
+  Satellite satellite;
+  double elevation = 0.0;
+  double wet_mapping = 1.0;
+  std::vector<TrackedBand> bands;  ///< code and phase less the model
+};
+
+struct BaseEpoch {
+  geo::GpsTime t;
+  Eigen::Vector3d r_e = Eigen::Vector3d::Zero();
+  std::vector<BaseSatellite> satellites;
+};
+
+std::vector<BaseEpoch> residuals_of(const std::vector<TrackedEpoch>& base, const BasePosition& position,
+                                    const DifferenceOptions& options) {
+  std::vector<BaseEpoch> epochs;
+  for (const TrackedEpoch& tracked : base) {
+    const std::optional<Eigen::Vector3d> r_e = position(tracked.t);
+    if (!r_e) continue;
+    BaseEpoch& epoch = epochs.emplace_back(BaseEpoch{tracked.t, *r_e, {}});
+    const geo::Geodetic receiver = geo::geodetic_from_ecef(*r_e);
+    for (const TrackedSatellite& s : tracked.satellites) {
+      const SignalPath path = path_to(s.state, *r_e, receiver, tracked.t, options.air.troposphere);
+      if (path.direction.elevation < options.elevation_mask) continue;
+      BaseSatellite& of =
+          epoch.satellites.emplace_back(BaseSatellite{s.satellite, path.direction.elevation, path.wet_mapping, s.bands});
+      const double modelled = path.modelled(s.state);
+      for (TrackedBand& band : of.bands) {
+        if (band.code) *band.code -= modelled;
+        if (band.phase) *band.phase -= modelled;
+      }
+    }
+  }
+  return epochs;
+}
+
+/// The base's residuals at any instant, linearly between its epochs.
+class BaseInterpolation {
+ public:
+  BaseInterpolation(std::vector<BaseEpoch> epochs, double longest_gap) : epochs_(std::move(epochs)), gap_(longest_gap) {}
+
+  /// Its epochs at and around an instant; the second with weight w, none where the first is at the same time.
+  struct Pair {
+    const BaseEpoch* first = nullptr;
+    const BaseEpoch* second = nullptr;
+    double w = 0.0;
+    double age = 0.0;
+  };
+  Pair around(geo::GpsTime t) const {
+    constexpr double kSame = 0.05;  // s: receivers' clocks are off by milliseconds
+    Pair pair;
+    const auto after = std::ranges::lower_bound(epochs_, t - kSame, {}, &BaseEpoch::t);
+    if (after == epochs_.end()) return pair;
+    if (std::abs(after->t - t) <= kSame) {
+      pair.first = &*after;
+      pair.age = std::abs(after->t - t);
+      return pair;
+    }
+    if (after == epochs_.begin() || after->t - std::prev(after)->t > gap_) return pair;
+    pair.first = &*std::prev(after);
+    pair.second = &*after;
+    pair.w = (t - pair.first->t) / (pair.second->t - pair.first->t);
+    pair.age = std::min(t - pair.first->t, pair.second->t - t);
+    return pair;
+  }
+
+  static const BaseSatellite* find(const BaseEpoch& epoch, Satellite satellite) {
+    const auto found = std::ranges::find(epoch.satellites, satellite, &BaseSatellite::satellite);
+    return found == epoch.satellites.end() ? nullptr : &*found;
+  }
+  static const TrackedBand* find(const BaseSatellite& satellite, char band) {
+    const auto found = std::ranges::find(satellite.bands, band, &TrackedBand::band);
+    return found == satellite.bands.end() ? nullptr : &*found;
+  }
+
+  /// One satellite; without bands where it is not there.
+  static BaseSatellite satellite_at(const Pair& pair, Satellite satellite) {
+    const BaseSatellite* first = find(*pair.first, satellite);
+    if (first == nullptr) return {};
+    if (pair.second == nullptr) return *first;
+    const BaseSatellite* second = find(*pair.second, satellite);
+    if (second == nullptr) return {};
+    BaseSatellite between = *first;
+    between.elevation += pair.w * (second->elevation - first->elevation);
+    std::erase_if(between.bands, [&](TrackedBand& band) {
+      const TrackedBand* next = find(*second, band.band);
+      if (next == nullptr) return true;
+      if (band.code && next->code)
+        *band.code += pair.w * (*next->code - *band.code);
+      else
+        band.code.reset();
+      if (band.phase && next->phase && band.arc == next->arc)
+        *band.phase += pair.w * (*next->phase - *band.phase);
+      else
+        band.phase.reset();
+      return !band.code && !band.phase;
+    });
+    return between;
+  }
+
+ private:
+  std::vector<BaseEpoch> epochs_;
+  double gap_;
+};
+
+std::vector<BandDifference> bands_of(const TrackedSatellite& rover, const BaseSatellite& base) {
+  constexpr int kManyArcs = 1 << 15;  // of one receiver: both numbers in one
+  std::vector<BandDifference> bands;
+  for (const TrackedBand& r : rover.bands) {
+    const TrackedBand* b = BaseInterpolation::find(base, r.band);
+    if (b == nullptr) continue;
+    BandDifference d;
+    d.band = r.band;
+    d.frequency = r.frequency;
+    if (r.code && b->code) d.code = *r.code - *b->code;
+    if (r.phase && b->phase) d.phase = *r.phase - *b->phase;
+    if (!d.code && !d.phase) continue;
+    d.rover_cn0 = r.cn0;
+    d.base_cn0 = b->cn0;
+    d.half_cycle = r.half_cycle || b->half_cycle;
+    d.arc = r.arc % kManyArcs * kManyArcs + b->arc % kManyArcs;
+    bands.push_back(d);
+  }
+  return bands;
+}
+
+}  // namespace
+
+double BandDifference::wavelength() const {
+  return kSpeedOfLight / frequency;
+}
+
+std::vector<DifferenceEpoch> form_differences(const record::ObservationRecording& rover,
+                                              const record::ObservationRecording& base, const Orbits& orbits,
+                                              const BasePosition& base_position, const DifferenceOptions& options) {
+  std::map<std::pair<record::SatelliteSystem, char>, char> rover_signals, base_signals;
+  for (const auto& [band, pair] : choose_signals(rover, base, options.systems)) {
+    rover_signals[band] = pair.rover;
+    base_signals[band] = pair.base;
+  }
+  const geo::GpsTime first = rover.epochs.front().t, last = rover.epochs.back().t;
+  const double room = options.longest_base_gap_s + 1.0;
+  const BaseInterpolation bases(
+      residuals_of(track(base, orbits, base_signals, first - room, last + room), base_position, options),
+      options.longest_base_gap_s);
+  std::vector<DifferenceEpoch> epochs;
+  Eigen::Vector3d start_e = rover.approximate_r_e.value_or(Eigen::Vector3d::Zero());
+  for (const TrackedEpoch& tracked : track(rover, orbits, rover_signals, first, last)) {
+    DifferenceEpoch& epoch = epochs.emplace_back();
+    epoch.t = tracked.t;
+    epoch.seen = static_cast<int>(tracked.codes.size());
+    epoch.alone = single_point(tracked.codes, tracked.t, start_e, options.air, options.elevation_mask);
+    if (epoch.alone) start_e = epoch.alone->r_e;
+    const BaseInterpolation::Pair pair = bases.around(tracked.t);
+    if (pair.first == nullptr) continue;
+    epoch.age_s = pair.age;
+    epoch.r_base_e = pair.first->r_e;
+    for (const TrackedSatellite& s : tracked.satellites) {
+      const BaseSatellite at_base = BaseInterpolation::satellite_at(pair, s.satellite);
+      std::vector<BandDifference> bands = bands_of(s, at_base);
+      if (!bands.empty())
+        epoch.satellites.push_back({s.satellite, s.state, at_base.elevation, at_base.wet_mapping, std::move(bands)});
+    }
+  }
+  break_arcs(epochs);
+  return epochs;
+}
+
+}  // namespace coast::carrier

@@ -1,0 +1,118 @@
+#include "coast/carrier/ppk.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "coast/record/error.hpp"
+#include "pass.hpp"
+#include "phase_velocity.hpp"
+
+namespace coast::carrier {
+
+namespace {
+
+/// Shares out the progress of stages that take about as long as each other.
+class Stages {
+ public:
+  Stages(const std::function<void(double)>& progress, int count) : progress_(progress), count_(count) {}
+  std::function<void(double)> next() {
+    const int done = done_++;
+    return [this, done](double share) {
+      if (progress_) progress_((done + share) / count_);
+    };
+  }
+
+ private:
+  const std::function<void(double)>& progress_;
+  int count_;
+  int done_ = 0;
+};
+
+/// What the baseline calls for.
+AirStates air_states(const std::vector<DifferenceEpoch>& epochs) {
+  constexpr double kFar = 10e3;     // m
+  constexpr double kAbove = 150.0;  // m
+  std::vector<double> lengths, heights;
+  for (const DifferenceEpoch& epoch : epochs) {
+    if (!epoch.alone || !epoch.age_s) continue;
+    const Eigen::Vector3d baseline_e = epoch.alone->r_e - epoch.r_base_e;
+    lengths.push_back(baseline_e.norm());
+    heights.push_back(std::abs(baseline_e.dot(epoch.r_base_e.normalized())));
+  }
+  if (lengths.empty()) return {};
+  const double length = *std::ranges::max_element(lengths), height = *std::ranges::max_element(heights);
+  return {length > kFar, length > kFar || height > kAbove};
+}
+
+void check(const record::ObservationRecording& rover, const record::ObservationRecording& base, const PpkSolution& solution,
+           const std::vector<DifferenceEpoch>& epochs) {
+  if (solution.signals.empty())
+    throw InputError({base.source, 0, fmt::format("no signal whose code and phase {} has too", rover.source),
+                      "two receivers that track the same band of the same system",
+                      "Look at the observation types in both headers."});
+  if (std::ranges::none_of(epochs, [](const DifferenceEpoch& e) { return e.age_s.has_value(); }))
+    throw InputError(
+        {base.source, 0,
+         fmt::format("epochs from {} to {}", geo::to_string(base.epochs.front().t), geo::to_string(base.epochs.back().t)),
+         fmt::format("some within {} to {}, the time of {}", geo::to_string(rover.epochs.front().t),
+                     geo::to_string(rover.epochs.back().t), rover.source),
+         "Give the base's file of the same time."});
+  if (std::ranges::none_of(epochs, [](const DifferenceEpoch& e) { return e.seen > 0; }))
+    throw InputError({rover.source, 0, "no satellite whose orbit is known", "ephemerides of the same hours",
+                      "Give the navigation file of the same day."});
+}
+
+}  // namespace
+
+std::string_view in_words(Shortfall shortfall) {
+  switch (shortfall) {
+    case Shortfall::kNone:
+      return "nothing";
+    case Shortfall::kNoBase:
+      return "no epoch of the base near enough";
+    case Shortfall::kNoPosition:
+      return "not even a single-point position";
+    case Shortfall::kFewSatellites:
+      return "fewer than four satellites that both receivers track";
+    case Shortfall::kContradiction:
+      return "observations that contradict each other";
+    case Shortfall::kFewAmbiguities:
+      return "fewer than four ambiguities that can be integers";
+    case Shortfall::kLowSuccessRate:
+      return "ambiguities too uncertain for integers";
+    case Shortfall::kLowRatio:
+      return "two sets of integers nearly as good";
+    case Shortfall::kBadGeometry:
+      return "satellites placed too badly for centimetres";
+    case Shortfall::kSeparated:
+      return "forward and backward differ beyond their sigmas";
+  }
+  return "";
+}
+
+PpkSolution solve_ppk(const record::ObservationRecording& rover, const record::ObservationRecording& base, const Orbits& orbits,
+                      const BasePosition& base_position, const PpkOptions& options,
+                      const std::function<void(double)>& progress) {
+  PpkSolution solution;
+  solution.signals = choose_signals(rover, base, options.differences.systems);
+  const std::vector<DifferenceEpoch> epochs = form_differences(rover, base, orbits, base_position, options.differences);
+  check(rover, base, solution, epochs);
+  PpkOptions settled = options;
+  if (!options.air) settled.air = air_states(epochs);
+  const bool combined = options.order == PassOrder::kCombined;
+  const bool backward = options.order == PassOrder::kBackward;
+  Stages stages(progress, (options.noise ? 0 : 1) + (combined ? 2 : 1));
+  if (!options.noise) {
+    settled.noise = NoiseScale{};
+    settled.noise = estimate_noise(solve_pass(epochs, settled, backward, stages.next()), *settled.noise);
+  }
+  solution.noise = *settled.noise;
+  solution.air = *settled.air;
+  solution.epochs = solve_pass(epochs, settled, backward, stages.next());
+  if (combined) solution.epochs = combine(solution.epochs, solve_pass(epochs, settled, true, stages.next()));
+  add_phase_velocities(epochs, solution.noise, options.differences, solution.epochs);
+  return solution;
+}
+
+}  // namespace coast::carrier

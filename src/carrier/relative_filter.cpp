@@ -1,0 +1,201 @@
+#include "relative_filter.hpp"
+
+#include <Eigen/Cholesky>
+#include <algorithm>
+#include <cmath>
+
+#include "receiver_track.hpp"
+
+namespace coast::carrier {
+
+namespace {
+
+using Kind = Unknown::Kind;
+
+constexpr double kUnknownPosition = 30.0;   // m, sd of a single-point position, with room
+constexpr double kUnknownAmbiguity = 30.0;  // m, sd of code less phase, with room
+// A phase's multipath lasts: averages are not as good as those of white noise, and old ambiguities not exact.
+constexpr double kAmbiguityWalk = 0.003;  // cycles/sqrt(s)
+
+Unknown ambiguity_of(const SatelliteDifference& satellite, const BandDifference& band) {
+  return {Kind::kAmbiguity, satellite.satellite, band.band, band.arc};
+}
+
+/// Whitened double differences with their predicted covariance.
+struct Innovation {
+  Eigen::MatrixXd H;
+  Eigen::VectorXd v;
+  Eigen::MatrixXd PHt;
+  Eigen::LLT<Eigen::MatrixXd> S;
+};
+
+Innovation innovation_of(const DoubleDifferences& dd, const RelativeState& state) {
+  Innovation in;
+  in.H = dd.B * dd.H;
+  in.v = dd.B * dd.residual;
+  in.PHt = state.P * in.H.transpose();
+  Eigen::MatrixXd S = in.H * in.PHt;
+  S.diagonal().array() += 1.0;
+  in.S.compute(S);
+  return in;
+}
+
+/// The row whose error would explain the innovations best (Teunissen 1990: w-test); none where all are plausible.
+std::optional<std::size_t> outlier(const DoubleDifferences& dd, const Innovation& in) {
+  constexpr double kSuspicious = 4.5;   // sd
+  constexpr double kControlled = 0.01;  // of a variance of one: below, nothing else speaks of this row
+  const Eigen::VectorXd y = in.S.matrixL().solve(in.v);
+  const Eigen::MatrixXd Z = in.S.matrixL().solve(dd.B);
+  std::optional<std::size_t> worst;
+  double largest = kSuspicious;
+  for (Eigen::Index i = 0; i < Z.cols(); ++i) {
+    const double squared = Z.col(i).squaredNorm();
+    if (squared < kControlled) continue;
+    const double w = std::abs(Z.col(i).dot(y)) / std::sqrt(squared);
+    if (w < largest) continue;
+    largest = w;
+    worst = static_cast<std::size_t>(i);
+  }
+  return worst;
+}
+
+SignalResidual left_out(const DifferenceEpoch& epoch, const Row& row, double residual) {
+  const SatelliteDifference& satellite = epoch.satellites[row.satellite];
+  return {satellite.satellite, satellite.bands[row.band].band, row.phase, residual * row.sd, row.sd,
+          row.direction,       SignalResidual::Use::kLeftOut};
+}
+
+}  // namespace
+
+FloatEpoch RelativeFilter::step(const DifferenceEpoch& epoch) {
+  FloatEpoch result;
+  const double dt = started_ ? std::abs(epoch.t - last_) : 0.0;
+  if (!epoch.age_s) {
+    result.shortfall = Shortfall::kNoBase;
+    return result;
+  }
+  if (!predict_position(epoch, dt)) {
+    result.shortfall = Shortfall::kNoPosition;
+    return result;
+  }
+  forget_unseen(epoch);
+  predict_ambiguities(epoch, dt);
+  predict_air(epoch, dt);
+  last_ = epoch.t;
+  started_ = true;
+  update(epoch, result);
+  return result;
+}
+
+bool RelativeFilter::predict_position(const DifferenceEpoch& epoch, double dt) {
+  constexpr double kFastest = 50.0;  // m/s, where nothing else tells how far the rover is by now
+  const bool keeps = started_ && options_.motion == RoverMotion::kStatic;
+  if (keeps) return true;
+  if (!started_ && !epoch.alone) return false;
+  double sd = kUnknownPosition;
+  if (epoch.alone)
+    state_.x.head<3>() = epoch.alone->r_e;
+  else
+    sd += kFastest * dt;
+  for (Eigen::Index i = 0; i < 3; ++i) state_.reset(i, state_.x(i), sd * sd);
+  return true;
+}
+
+void RelativeFilter::forget_unseen(const DifferenceEpoch& epoch) {
+  constexpr double kIonosphere = 600.0;  // s: until then what was known of it is worth something
+  const double gap = longest_gap(interval_);
+  state_.remove_if([&](const Unknown& unknown) {
+    if (unknown.kind != Kind::kAmbiguity && unknown.kind != Kind::kIonosphere) return false;
+    const double longest = unknown.kind == Kind::kAmbiguity ? gap : std::max(gap, kIonosphere);
+    return std::abs(epoch.t - seen_.at(unknown)) > longest;
+  });
+}
+
+/// Differences between receivers grow with the distance: a few mm a km in quiet times, and change within half an hour.
+void RelativeFilter::predict_air(const DifferenceEpoch& epoch, double dt) {
+  constexpr double kIonospherePerMetre = 2e-6;  // vertical; more towards the horizon
+  constexpr double kIonosphereTime = 1800.0;    // s
+  constexpr double kZenithDelay = 0.02;         // m
+  constexpr double kZenithPerMetre = 3e-4;      // of height difference: what a standard atmosphere may be off
+  constexpr double kZenithWalk = 3e-5;          // m/sqrt(s)
+  const AirStates air = options_.air.value_or(AirStates{});
+  const Eigen::Vector3d baseline_e = state_.x.head<3>() - epoch.r_base_e;
+  if (air.zenith_delay) {
+    const Unknown unknown{Kind::kZenithDelay, {}, '0', 0};
+    const double sd = kZenithDelay + kZenithPerMetre * std::abs(baseline_e.dot(epoch.r_base_e.normalized()));
+    const Eigen::Index i = state_.index(unknown);
+    if (i < 0)
+      state_.add(unknown, 0.0, sd * sd);
+    else
+      state_.P(i, i) += kZenithWalk * kZenithWalk * dt;
+  }
+  if (!air.ionosphere) return;
+  const double phi = std::exp(-dt / kIonosphereTime);
+  for (Eigen::Index i = 3; i < state_.size(); ++i) {
+    const Unknown& unknown = state_.unknowns()[static_cast<std::size_t>(i)];
+    if (unknown.kind != Kind::kIonosphere) continue;
+    state_.x(i) *= phi;
+    state_.P.row(i) *= phi;
+    state_.P.col(i) *= phi;
+    state_.P(i, i) += (1.0 - phi * phi) * ionosphere_.at(unknown);
+  }
+  for (const SatelliteDifference& satellite : epoch.satellites) {
+    const Unknown unknown{Kind::kIonosphere, satellite.satellite, '0', 0};
+    seen_[unknown] = epoch.t;
+    const double slant = 1.0 / std::sqrt(std::max(1.0 - std::pow(0.95 * std::cos(satellite.base_elevation), 2.0), 0.05));
+    const double sd = kIonospherePerMetre * baseline_e.norm() * slant;
+    ionosphere_[unknown] = sd * sd;
+    if (state_.index(unknown) < 0) state_.add(unknown, 0.0, sd * sd);
+  }
+}
+
+void RelativeFilter::predict_ambiguities(const DifferenceEpoch& epoch, double dt) {
+  for (Eigen::Index i = 3; i < state_.size(); ++i)
+    if (state_.unknowns()[static_cast<std::size_t>(i)].kind == Kind::kAmbiguity)
+      state_.P(i, i) += kAmbiguityWalk * kAmbiguityWalk * dt;
+  for (const SatelliteDifference& satellite : epoch.satellites)
+    for (const BandDifference& band : satellite.bands) {
+      if (!band.phase) continue;
+      const Unknown unknown = ambiguity_of(satellite, band);
+      seen_[unknown] = epoch.t;
+      if (state_.index(unknown) >= 0) continue;
+      const double variance = kUnknownAmbiguity / band.wavelength() * kUnknownAmbiguity / band.wavelength();
+      const double value = band.code ? (*band.phase - *band.code) / band.wavelength() : 0.0;
+      state_.add(unknown, value, variance);
+    }
+}
+
+void RelativeFilter::update(const DifferenceEpoch& epoch, FloatEpoch& result) {
+  constexpr std::size_t kFewest = 4;
+  LeftOut out;
+  for (;;) {
+    result.dd = double_differences(epoch, state_, out, options_.differences, options_.noise.value_or(NoiseScale{}));
+    std::set<std::size_t> satellites;
+    for (const Row& row : result.dd.rows) satellites.insert(row.satellite);
+    if (satellites.size() < kFewest || result.dd.empty()) {
+      result.shortfall = out.empty() ? Shortfall::kFewSatellites : Shortfall::kContradiction;
+      return;
+    }
+    const Innovation in = innovation_of(result.dd, state_);
+    if (const std::optional<std::size_t> worst = outlier(result.dd, in)) {
+      const Row& row = result.dd.rows[*worst];
+      result.left_out.push_back(left_out(epoch, row, result.dd.residual(static_cast<Eigen::Index>(*worst))));
+      out.insert({row.satellite, row.band, row.phase});
+      if (row.phase) {
+        const BandDifference& band = epoch.satellites[row.satellite].bands[row.band];
+        const Eigen::Index i = state_.index(ambiguity_of(epoch.satellites[row.satellite], band));
+        const double variance = kUnknownAmbiguity / band.wavelength() * kUnknownAmbiguity / band.wavelength();
+        state_.reset(i, band.code ? (*band.phase - *band.code) / band.wavelength() : state_.x(i), variance);
+      }
+      continue;
+    }
+    const Eigen::MatrixXd W = in.S.matrixL().solve(in.PHt.transpose());
+    result.step = W.transpose() * in.S.matrixL().solve(in.v);
+    state_.x += result.step;
+    state_.P -= W.transpose() * W;
+    result.updated = true;
+    return;
+  }
+}
+
+}  // namespace coast::carrier

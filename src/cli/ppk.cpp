@@ -1,0 +1,32 @@
+#include <fmt/format.h>
+
+#include "coast/io/writers.hpp"
+#include "coast/report/render.hpp"
+#include "commands.hpp"
+#include "load.hpp"
+#include "ppk_page.hpp"
+#include "progress.hpp"
+
+namespace coast::cli {
+
+void ppk(const std::filesystem::path& input, const CommonOptions& options) {
+  ProgressLine line(options.quiet);
+  const PpkConfig config = read_ppk(input);
+  const std::filesystem::path out = output_folder(input, options.out);
+  line.show("reading", 0.0);
+  const PpkResult result = run_ppk(config, [&](double share) { line.show("solving", share); });
+  line.show("writing", 0.0);
+  const report::Page page = ppk_page(config, result);
+  io::write_gnss_pos(out / "ppk.pos", carrier::to_fixes(result.solution, config.rover.string()));
+  io::write_text(out / "residuals.csv", residuals_csv(result));
+  io::write_text(out / "ppk.json", ppk_json(config, result));
+  io::write_text(out / "ppk.resolved.yaml", config.map.resolved_yaml());
+  io::write_text(out / "report.json", report::to_json(page));
+  io::write_text(out / "report.html", report::render(page));
+  line.clear();
+  for (const record::Event& event : result.events)
+    if (event.severity == record::Event::Severity::kWarning) fmt::print(stderr, "warning: {}\n", event.text);
+  if (!options.quiet) fmt::print("{}positions: {}\n", ppk_text(result), (out / "ppk.pos").string());
+}
+
+}  // namespace coast::cli

@@ -1,0 +1,127 @@
+#include "ppk_config.hpp"
+
+#include <array>
+
+#include "coast/geo/earth.hpp"
+#include "coast/geo/units.hpp"
+#include "coast/io/yaml.hpp"
+#include "commands.hpp"
+#include "indented.hpp"
+
+namespace coast::cli {
+
+namespace {
+
+// Also the example of docs/schema/ppk.schema.json; a test holds them together.
+constexpr std::string_view kPpkExample = R"(schema: coast.ppk/1
+rover: rover.obs
+base: base.obs.gz
+nav: [brdc.nav]
+base_position: {ecef_m: [-3959400.631, 3385704.533, 3667523.111]}
+)";
+
+using config::Node;
+using record::SatelliteSystem;
+
+std::vector<std::filesystem::path> paths(const Node& node) {
+  std::vector<std::filesystem::path> all;
+  if (!node.is_list()) return {node.path()};
+  for (const Node& item : node.items()) all.push_back(item.path());
+  if (all.empty()) throw node.error("an empty list", "one file or more");
+  return all;
+}
+
+BaseAt base_position(const Node& map) {
+  const auto node = map.find("base_position");
+  if (!node || !node->is_map())
+    return {static_cast<BaseAt::How>(1 + map.choice("base_position", {"header", "average", "moving"}, 0)), {}};
+  if (const auto ecef = node->find("ecef_m")) {
+    constexpr double kLeast = 6.2e6, kMost = 7e6;  // m from the Earth's centre
+    const double radius = ecef->vector3().norm();
+    if (!(radius > kLeast && radius < kMost)) throw ecef->error("a point not on the Earth", "x, y, z in m, ECEF");
+    return {BaseAt::How::kGiven, ecef->vector3()};
+  }
+  const Node geodetic = node->at("geodetic_deg_m");
+  const Eigen::Vector3d v = geodetic.vector3();
+  if (std::abs(v.x()) > 90.0) throw geodetic.error("a latitude beyond 90 deg", "[latitude_deg, longitude_deg, height_m]");
+  return {BaseAt::How::kGiven, geo::ecef_from_geodetic({geo::kDegree * v.x(), geo::kDegree * v.y(), v.z()})};
+}
+
+std::set<SatelliteSystem> systems(const Node& map, std::set<SatelliteSystem> otherwise) {
+  constexpr std::array kSystems{SatelliteSystem::kGps, SatelliteSystem::kGlonass, SatelliteSystem::kGalileo,
+                                SatelliteSystem::kBeidou, SatelliteSystem::kQzss};
+  const auto list = map.find("systems");
+  if (!list) return otherwise;
+  std::set<SatelliteSystem> chosen;
+  for (const Node& item : list->items()) chosen.insert(kSystems[item.choice({"gps", "glonass", "galileo", "beidou", "qzss"})]);
+  if (chosen.empty()) throw list->error("an empty list", "some of gps, glonass, galileo, beidou, qzss");
+  return chosen;
+}
+
+void read_fixing(const Node& map, carrier::FixingOptions& fixing) {
+  const auto node = map.find("fix");
+  if (node && !node->is_map()) {
+    fixing.wanted = node->flag();
+    return;
+  }
+  const Node fix = map.section("fix");
+  fixing.ratio = fix.number_within("ratio", fixing.ratio, 1.0, 1e3);
+  fixing.success_rate = fix.number_within("success_rate", fixing.success_rate, 0.0, 1.0);
+  fixing.elevation_mask = geo::kDegree * fix.number_within("elevation_mask_deg", 0.0, 0.0, 80.0);
+}
+
+void read_noise(const Node& map, carrier::PpkOptions& options) {
+  const auto node = map.find("noise");
+  if (!node || !node->is_map()) {
+    static_cast<void>(map.choice("noise", {"estimated"}, 0));
+    return;
+  }
+  carrier::NoiseScale noise;
+  noise.phase = node->number_within("phase", 1.0, 1e-3, 100.0);
+  noise.code = node->number_within("code", 1.0, 1e-3, 100.0);
+  options.noise = noise;
+}
+
+}  // namespace
+
+std::string ppk_example(const std::string& indent) {
+  return indented(kPpkExample, indent);
+}
+
+PpkConfig PpkConfig::from(const Node& map) {
+  PpkConfig config;
+  config.map = map;
+  config.rover = map.at("rover").path();
+  config.base = map.at("base").path();
+  config.navigation = paths(map.at("nav"));
+  config.base_at = base_position(map);
+  carrier::PpkOptions& o = config.options;
+  o.differences.systems = systems(map, o.differences.systems);
+  o.differences.elevation_mask = geo::kDegree * map.number_within("elevation_mask_deg", 10.0, 0.0, 60.0);
+  o.differences.longest_base_gap_s = map.number_within("longest_base_gap_s", o.differences.longest_base_gap_s, 0.0, 3600.0);
+  o.differences.air.troposphere = map.choice("troposphere", {"standard", "none"}, 0) == 0;
+  config.broadcast_ionosphere = map.choice("ionosphere", {"broadcast", "none"}, 0) == 0;
+  o.motion =
+      map.choice("motion", {"kinematic", "static"}, 0) == 0 ? carrier::RoverMotion::kKinematic : carrier::RoverMotion::kStatic;
+  constexpr std::array kOrders{carrier::PassOrder::kCombined, carrier::PassOrder::kForward, carrier::PassOrder::kBackward};
+  o.order = kOrders[map.choice("solution", {"combined", "forward", "backward"}, 0)];
+  read_fixing(map, o.fixing);
+  read_noise(map, o);
+  return config;
+}
+
+PpkConfig read_ppk(const std::filesystem::path& file) {
+  const Node root = io::load_yaml(file);
+  if (const auto gnss = root.find("gnss")) {
+    const Node map = gnss->at("ppk");
+    PpkConfig config = PpkConfig::from(map);
+    map.refuse_unasked();
+    return config;
+  }
+  static_cast<void>(root.choice("schema", {"coast.ppk/1"}, 0));
+  PpkConfig config = PpkConfig::from(root);
+  root.refuse_unasked();
+  return config;
+}
+
+}  // namespace coast::cli

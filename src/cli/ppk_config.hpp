@@ -1,0 +1,35 @@
+#pragma once
+// The map `ppk` of run.yaml, or a file of its own: what `coast ppk` reads.
+
+#include <filesystem>
+#include <variant>
+#include <vector>
+
+#include "coast/carrier/ppk.hpp"
+#include "coast/config/node.hpp"
+
+namespace coast::cli {
+
+/// Where the base stands.
+struct BaseAt {
+  /// kAveraged: the mean of its own single-point positions, metres off; kMoving: these, epoch by epoch.
+  enum class How { kGiven, kHeader, kAveraged, kMoving } how = How::kHeader;
+  Eigen::Vector3d r_e = Eigen::Vector3d::Zero();  ///< marker, ECEF, m, of kGiven
+};
+
+struct PpkConfig {
+  config::Node map;
+  std::filesystem::path rover, base;
+  std::vector<std::filesystem::path> navigation;
+  BaseAt base_at;
+  bool broadcast_ionosphere = true;  ///< of single-point positions
+  carrier::PpkOptions options;
+
+  [[nodiscard]] static PpkConfig from(const config::Node& map);
+};
+
+/// A run.yaml, whose `gnss: {ppk: ..}` is taken, or a file with these keys alone.
+/// @throws InputError  with file and line
+[[nodiscard]] PpkConfig read_ppk(const std::filesystem::path& file);
+
+}  // namespace coast::cli

@@ -1,0 +1,23 @@
+#pragma once
+// From RINEX files to positions.
+
+#include <functional>
+#include <string>
+
+#include "ppk_config.hpp"
+
+namespace coast::cli {
+
+struct PpkResult {
+  carrier::PpkSolution solution;
+  Eigen::Vector3d r_base_e = Eigen::Vector3d::Zero();  ///< its antenna, ECEF, m; of the first epoch where it moves
+  std::string base_from;                               ///< where that comes from, in words
+  std::string rover, base;                             ///< receiver and antenna, in words
+  double interval_s = 0.0;                             ///< of the rover
+  record::Events events;                               ///< of all files and of the solution
+};
+
+/// @throws InputError, NumericalError
+[[nodiscard]] PpkResult run_ppk(const PpkConfig& config, const std::function<void(double)>& progress);
+
+}  // namespace coast::cli
