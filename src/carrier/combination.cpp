@@ -20,11 +20,14 @@ bool agree(const Eigen::Vector3d& difference, const Eigen::Matrix3d& covariance)
   return difference.norm() < kAlways || difference.dot(covariance.inverse() * difference) < kChiSquare;
 }
 
-/// The passes contradict each other, and nothing says which is right.
+/// The passes contradict each other, and nothing says which is right: the covariance spans both. A decimetre apart they cannot
+/// both have the integers.
 PpkEpoch separated(PpkEpoch likelier, const Eigen::Vector3d& difference) {
+  constexpr double kDecimetre = 0.1;
+  likelier.covariance_e += difference * difference.transpose();
+  if (difference.norm() < kDecimetre) return likelier;
   likelier.quality = FixQuality::kFloat;
   likelier.shortfall = Shortfall::kSeparated;
-  likelier.covariance_e += difference * difference.transpose();
   return likelier;
 }
 
@@ -44,7 +47,10 @@ PpkEpoch combine(const PpkEpoch& f, const PpkEpoch& b) {
                              : f_fixed          ? (f.fixed_ambiguities >= b.fixed_ambiguities ? f : b)
                                                 : (f.covariance_e.trace() < b.covariance_e.trace() ? f : b);
   PpkEpoch both;
-  if (!agree(difference, f.covariance_e + b.covariance_e))
+  // Multipath makes floats twice as wrong as they say for a while: against a fix they speak only where that is not enough.
+  constexpr double kFloatVariance = 4.0;
+  const double doubt_f = f_fixed || !b_fixed ? 1.0 : kFloatVariance, doubt_b = b_fixed || !f_fixed ? 1.0 : kFloatVariance;
+  if (!agree(difference, doubt_f * f.covariance_e + doubt_b * b.covariance_e))
     both = separated(likelier, difference);
   else
     both = f_fixed || b_fixed ? likelier : weighted(f, b);

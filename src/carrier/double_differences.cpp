@@ -32,8 +32,15 @@ struct Candidate {
 
 using Kind = Unknown::Kind;
 
+/// Sd of a code over the nominal sd of its phase.
+double code_scale(const SatelliteDifference& satellite, const BandDifference& band, const Weighting& weighting) {
+  const Unknown ambiguity{Kind::kAmbiguity, satellite.satellite, band.band, band.arc};
+  const double inflation = weighting.known.contains(ambiguity) ? weighting.noise.code_inflation : 1.0;
+  return kCodeToPhase * weighting.noise.code * inflation;
+}
+
 std::vector<Candidate> candidates(const DifferenceEpoch& epoch, const RelativeState& state, const LeftOut& left_out,
-                                  const DifferenceOptions& options, const NoiseScale& noise) {
+                                  const DifferenceOptions& options, const Weighting& weighting) {
   std::vector<Candidate> all;
   const Eigen::Vector3d r_e = state.x.head<3>();
   const geo::Geodetic rover = geo::geodetic_from_ecef(r_e);
@@ -44,12 +51,13 @@ std::vector<Candidate> candidates(const DifferenceEpoch& epoch, const RelativeSt
     const double modelled = path.modelled(satellite.state);
     for (std::size_t b = 0; b < satellite.bands.size(); ++b) {
       const BandDifference& band = satellite.bands[b];
-      const double sd = nominal_phase_sd(path.direction.elevation, satellite.base_elevation, band);
       for (const bool phase : {true, false}) {
         const std::optional<double>& observed = phase ? band.phase : band.code;
         if (!observed || left_out.contains({s, b, phase})) continue;
+        const double sd = nominal_phase_sd(path.direction.elevation, satellite.base_elevation, band);
+        const double scale = phase ? weighting.noise.phase : code_scale(satellite, band, weighting);
         all.push_back({{phase, satellite.satellite.system, band.band},
-                       {s, b, phase, sd * (phase ? noise.phase : kCodeToPhase * noise.code), path.direction},
+                       {s, b, phase, scale * sd, path.direction},
                        *observed - modelled,
                        path});
       }
@@ -88,8 +96,8 @@ double nominal_phase_sd(double rover_elevation, double base_elevation, const Ban
 }
 
 DoubleDifferences double_differences(const DifferenceEpoch& epoch, const RelativeState& state, const LeftOut& left_out,
-                                     const DifferenceOptions& options, const NoiseScale& noise) {
-  const std::vector<Candidate> all = candidates(epoch, state, left_out, options, noise);
+                                     const DifferenceOptions& options, const Weighting& weighting) {
+  const std::vector<Candidate> all = candidates(epoch, state, left_out, options, weighting);
   DoubleDifferences dd;
   const auto n = static_cast<Eigen::Index>(all.size());
   dd.H.setZero(n, state.size());

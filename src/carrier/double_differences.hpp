@@ -34,7 +34,13 @@ struct DoubleDifferences {
 /// Which rows of the epoch are not used: (satellite, band, phase).
 using LeftOut = std::set<std::tuple<std::size_t, std::size_t, bool>>;
 
+/// How observations are weighted.
+struct Weighting {
+  NoiseScale noise;
+  std::set<Unknown> known;  ///< ambiguities that a code has told of before
+};
+
 DoubleDifferences double_differences(const DifferenceEpoch& epoch, const RelativeState& state, const LeftOut& left_out,
-                                     const DifferenceOptions& options, const NoiseScale& noise);
+                                     const DifferenceOptions& options, const Weighting& weighting);
 
 }  // namespace coast::carrier

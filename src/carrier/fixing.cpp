@@ -3,6 +3,7 @@
 #include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
+#include <functional>
 
 #include "coast/carrier/integer_least_squares.hpp"
 #include "coast/record/error.hpp"
@@ -102,43 +103,86 @@ std::vector<Fixable> without(std::vector<Fixable> set, Satellite satellite) {
   return set;
 }
 
-/// All; without those that did not do last time; without one satellite, whichever it is; without ever more of the lowest, down
-/// to half: few integers that stand out are often wrong.
-std::optional<Attempt> search(const std::vector<Fixable>& all, const RelativeState& state, const FixingOptions& options,
-                              const std::vector<Satellite>& last_without) {
-  std::optional<Attempt> best = attempt(all, state);
-  if (!best || good(*best, options)) return best;
-  const auto consider = [&](const std::vector<Fixable>& set) {
-    if (2 * set.size() < all.size()) return false;
-    std::optional<Attempt> next = attempt(set, state);
-    if (!next) return false;
-    if (next->integers.success_rate >= options.success_rate && next->ratio > best->ratio) best = std::move(next);
-    return true;
-  };
-  std::vector<Fixable> set = all;
-  for (const Satellite satellite : last_without) set = without(set, satellite);
-  if (set.size() < all.size()) consider(set);
-  if (good(*best, options)) return best;
-  std::vector<Satellite> satellites = satellites_of(all);
-  for (const Satellite satellite : satellites) consider(without(all, satellite));
-  if (good(*best, options)) return best;
-  std::map<Satellite, double> elevations;
-  for (const Fixable& f : all) elevations[f.satellite] = f.elevation;
-  std::ranges::sort(satellites, {}, [&](Satellite s) { return elevations.at(s); });
-  set = all;
-  for (const Satellite satellite : satellites) {
-    set = without(set, satellite);
-    if (!consider(set) || good(*best, options)) break;
-  }
-  return best;
+/// Satellites, the one with the least certain ambiguities first.
+std::vector<Satellite> by_uncertainty(const Attempt& t) {
+  std::map<Satellite, double> variances;
+  for (Eigen::Index i = 0; i < t.D.rows(); ++i)
+    for (const Fixable& f : t.set)
+      if (t.D(i, f.index) > 0.0) variances[f.satellite] = std::max(variances[f.satellite], t.Q(i, i));
+  std::vector<Satellite> satellites = satellites_of(t.set);
+  std::ranges::sort(satellites, std::greater{}, [&](Satellite s) { return variances[s]; });
+  return satellites;
 }
+
+std::vector<Satellite> by_elevation(const std::vector<Fixable>& set) {
+  std::map<Satellite, double> elevations;
+  for (const Fixable& f : set) elevations[f.satellite] = f.elevation;
+  std::vector<Satellite> satellites = satellites_of(set);
+  std::ranges::sort(satellites, {}, [&](Satellite s) { return elevations.at(s); });
+  return satellites;
+}
+
+/// Partial fixing. At least half of the ambiguities stay: few integers that stand out are often wrong.
+class Search {
+ public:
+  Search(const std::vector<Fixable>& all, const RelativeState& state, const FixingOptions& options)
+      : all_(all), state_(state), options_(options), best_(attempt(all, state)) {}
+
+  /// All; else without those that had to stay float last time; else, where the integers are too uncertain, without the least
+  /// certain, where they do not stand out, without one satellite, whichever it is, or without the lowest.
+  std::optional<Attempt> run(const std::vector<Satellite>& without_last) {
+    if (!best_ || done()) return best_;
+    const Attempt whole = *best_;
+    std::vector<Fixable> set = all_;
+    for (const Satellite satellite : without_last) set = without(set, satellite);
+    if (set.size() < all_.size()) consider(set);
+    if (done()) return best_;
+    if (whole.integers.success_rate < options_.success_rate) {
+      drop(by_uncertainty(whole));
+      return best_;
+    }
+    for (const Satellite satellite : satellites_of(all_)) consider(without(all_, satellite));
+    if (!done()) drop(by_elevation(all_));
+    return best_;
+  }
+
+ private:
+  [[nodiscard]] bool done() const { return good(*best_, options_); }
+  /// @return whether there is a solution that is certain enough
+  bool consider(const std::vector<Fixable>& set) {
+    std::optional<Attempt> next = attempt(set, state_);
+    if (!next || next->integers.success_rate < options_.success_rate) return false;
+    if (best_->integers.success_rate < options_.success_rate || next->ratio > best_->ratio) best_ = std::move(next);
+    return true;
+  }
+  /// Ever more of these satellites, in their order; none where even half of the ambiguities would be too uncertain.
+  void drop(const std::vector<Satellite>& satellites) {
+    std::vector<std::vector<Fixable>> sets;
+    std::vector<Fixable> set = all_;
+    for (const Satellite satellite : satellites) {
+      set = without(set, satellite);
+      if (2 * set.size() < all_.size()) break;
+      sets.push_back(set);
+    }
+    if (sets.empty() || !consider(sets.back())) return;
+    for (const std::vector<Fixable>& larger : sets) {
+      consider(larger);
+      if (done()) return;
+    }
+  }
+
+  const std::vector<Fixable>& all_;
+  const RelativeState& state_;
+  const FixingOptions& options_;
+  std::optional<Attempt> best_;
+};
 
 }  // namespace
 
 FixedSolution AmbiguityFixing::fix(const DifferenceEpoch& epoch, const FloatEpoch& updated, const RelativeState& state) {
   FixedSolution solution;
   const std::vector<Fixable> all = fixable(epoch, updated, state, options_.elevation_mask);
-  const std::optional<Attempt> best = search(all, state, options_, without_);
+  const std::optional<Attempt> best = Search(all, state, options_).run(without_);
   if (!best) {
     solution.shortfall = Shortfall::kFewAmbiguities;
     return solution;
@@ -158,7 +202,7 @@ FixedSolution AmbiguityFixing::fix(const DifferenceEpoch& epoch, const FloatEpoc
   without_ = satellites_of(all);
   std::erase_if(without_, [&](Satellite s) { return std::ranges::find(solution.satellites, s) != solution.satellites.end(); });
   solution.ambiguities = static_cast<int>(best->a.size());
-  constexpr double kCentimetres = 0.05;  // m, sd in space
+  constexpr double kCentimetres = 0.1;  // m, sd in space
   solution.fixed = true;
   if (!(solution.position_covariance_e.trace() < kCentimetres * kCentimetres)) solution.shortfall = Shortfall::kBadGeometry;
   return solution;

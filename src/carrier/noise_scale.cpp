@@ -89,8 +89,8 @@ NoiseScale estimate_noise(const std::vector<PpkEpoch>& epochs, const NoiseScale&
     codes.squares += code.squares;
     codes.freedom += code.freedom;
   }
-  return {std::clamp(noise.phase * phases.scale(1.0), kLeast, kMost),
-          std::clamp(noise.code * codes.scale(1.0) * std::sqrt(inflation(epochs)), kLeast, kMost)};
+  return {std::clamp(noise.phase * phases.scale(1.0), kLeast, kMost), std::clamp(noise.code * codes.scale(1.0), kLeast, kMost),
+          std::sqrt(inflation(epochs))};
 }
 
 }  // namespace coast::carrier

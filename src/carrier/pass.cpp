@@ -46,19 +46,46 @@ void add_residuals(const DifferenceEpoch& epoch, const FloatEpoch& updated, cons
   }
 }
 
+/// To a satellite, north, east, down, and 1 for the clock.
+Eigen::Vector4d way_n(const Direction& direction) {
+  const double c = std::cos(direction.elevation);
+  return {c * std::cos(direction.azimuth), c * std::sin(direction.azimuth), -std::sin(direction.elevation), 1.0};
+}
+
 /// Sd of the position over that of ranges to these satellites.
 double pdop(const FloatEpoch& updated) {
   std::map<std::size_t, Eigen::Vector4d> ways;
   for (const Row& row : updated.dd.rows) {
-    const double c = std::cos(row.direction.elevation);
-    ways[row.satellite] = {c * std::cos(row.direction.azimuth), c * std::sin(row.direction.azimuth),
-                           std::sin(row.direction.elevation), 1.0};
+    ways[row.satellite] = way_n(row.direction);
   }
   if (ways.size() < 4) return 0.0;
   Eigen::Matrix4d N = Eigen::Matrix4d::Zero();
   for (const auto& [satellite, way] : ways) N += way * way.transpose();
   const double squared = N.inverse().topLeftCorner<3, 3>().trace();
   return squared > 0.0 ? std::sqrt(squared) : 0.0;
+}
+
+/// What the air does differently at both ends moves the position and is alike in all bands, so that no residual shows it. Where
+/// it is not estimated: as one range of each satellite, half a millimetre a kilometre off at the zenith, would move it.
+Eigen::Matrix3d air_covariance(const FloatEpoch& updated, const RelativeState& state, const DifferenceEpoch& epoch,
+                               const PpkOptions& options) {
+  constexpr double kPerMetre = 5e-7;
+  if (!options.differences.air.troposphere || (options.air && options.air->ionosphere)) return Eigen::Matrix3d::Zero();
+  const double zenith = kPerMetre * (state.x.head<3>() - epoch.r_base_e).norm();
+  std::map<std::size_t, Eigen::Vector4d> ways;  // with the clock
+  std::map<std::size_t, double> variances;
+  for (const Row& row : updated.dd.rows) {
+    if (ways.contains(row.satellite)) continue;
+    const double slant = zenith / std::max(std::sin(row.direction.elevation), 0.1);
+    variances[row.satellite] = slant * slant;
+    ways[row.satellite] = way_n(row.direction);
+  }
+  Eigen::Matrix4d N = Eigen::Matrix4d::Zero();
+  for (const auto& [satellite, way] : ways) N += way * way.transpose() / variances.at(satellite);
+  const Eigen::Matrix3d covariance_n = N.inverse().topLeftCorner<3, 3>();
+  if (!covariance_n.allFinite()) return Eigen::Matrix3d::Zero();
+  const Eigen::Matrix3d C_n_e = geo::C_n_e(geo::geodetic_from_ecef(state.x.head<3>()));
+  return C_n_e * covariance_n * C_n_e.transpose();
 }
 
 PpkEpoch solve(const DifferenceEpoch& epoch, const PpkOptions& options, RelativeFilter& filter, AmbiguityFixing& fixing) {
@@ -84,7 +111,8 @@ PpkEpoch solve(const DifferenceEpoch& epoch, const PpkOptions& options, Relative
   const bool precise = fixed.fixed && solved.shortfall == Shortfall::kNone;
   solved.quality = precise ? record::FixQuality::kFixed : record::FixQuality::kFloat;
   solved.r_e = x.head<3>();
-  solved.covariance_e = fixed.fixed ? fixed.position_covariance_e : state.P.topLeftCorner<3, 3>();
+  solved.covariance_e = fixed.fixed ? fixed.position_covariance_e : state.P.topLeftCorner<3, 3>().eval();
+  solved.covariance_e += air_covariance(updated, state, epoch, options);
   add_residuals(epoch, updated, x - (state.x - updated.step), fixed, solved);
   return solved;
 }

@@ -141,7 +141,8 @@ SinglePoint::Velocity central(const Displacements& steps, std::size_t i) {
   const double jerk = earlier != nullptr && later != nullptr
                           ? (acceleration(after, *later) - acceleration(*earlier, before)).norm() / span
                           : 2.0 * acceleration(before, after).norm() / span;
-  const double unmodelled = jerk * span * span / 24.0;
+  constexpr double kRoom = 3.0;  // the jerk of the neighbours is not that of this very interval
+  const double unmodelled = kRoom * jerk * span * span / 24.0;
   SinglePoint::Velocity velocity;
   velocity.v_e = (before.d_e + after.d_e) / span;
   velocity.covariance_e = 0.5 * (before.covariance_e + after.covariance_e) / (span * span);

@@ -67,6 +67,10 @@ SignalResidual left_out(const DifferenceEpoch& epoch, const Row& row, double res
 
 }  // namespace
 
+RelativeFilter::RelativeFilter(const PpkOptions& options, double interval) : options_(options), interval_(interval) {
+  if (options.noise) weighting_.noise = *options.noise;
+}
+
 FloatEpoch RelativeFilter::step(const DifferenceEpoch& epoch) {
   FloatEpoch result;
   const double dt = started_ ? std::abs(epoch.t - last_) : 0.0;
@@ -113,16 +117,18 @@ void RelativeFilter::forget_unseen(const DifferenceEpoch& epoch) {
 
 /// Differences between receivers grow with the distance: a few mm a km in quiet times, and change within half an hour.
 void RelativeFilter::predict_air(const DifferenceEpoch& epoch, double dt) {
-  constexpr double kIonospherePerMetre = 2e-6;  // vertical; more towards the horizon
+  constexpr double kIonospherePerMetre = 1e-6;  // vertical; more towards the horizon
   constexpr double kIonosphereTime = 1800.0;    // s
-  constexpr double kZenithDelay = 0.02;         // m
-  constexpr double kZenithPerMetre = 3e-4;      // of height difference: what a standard atmosphere may be off
+  constexpr double kZenithDelay = 0.001;        // m
+  constexpr double kZenithPerMetre = 4e-7;      // of baseline: a centimetre in 25 km
+  constexpr double kZenithPerHeight = 3e-4;     // m/m: what a standard atmosphere may be off
   constexpr double kZenithWalk = 3e-5;          // m/sqrt(s)
   const AirStates air = options_.air.value_or(AirStates{});
   const Eigen::Vector3d baseline_e = state_.x.head<3>() - epoch.r_base_e;
   if (air.zenith_delay) {
     const Unknown unknown{Kind::kZenithDelay, {}, '0', 0};
-    const double sd = kZenithDelay + kZenithPerMetre * std::abs(baseline_e.dot(epoch.r_base_e.normalized()));
+    const double height = std::abs(baseline_e.dot(epoch.r_base_e.normalized()));
+    const double sd = kZenithDelay + kZenithPerMetre * baseline_e.norm() + kZenithPerHeight * height;
     const Eigen::Index i = state_.index(unknown);
     if (i < 0)
       state_.add(unknown, 0.0, sd * sd);
@@ -169,7 +175,7 @@ void RelativeFilter::update(const DifferenceEpoch& epoch, FloatEpoch& result) {
   constexpr std::size_t kFewest = 4;
   LeftOut out;
   for (;;) {
-    result.dd = double_differences(epoch, state_, out, options_.differences, options_.noise.value_or(NoiseScale{}));
+    result.dd = double_differences(epoch, state_, out, options_.differences, weighting_);
     std::set<std::size_t> satellites;
     for (const Row& row : result.dd.rows) satellites.insert(row.satellite);
     if (satellites.size() < kFewest || result.dd.empty()) {
@@ -183,7 +189,9 @@ void RelativeFilter::update(const DifferenceEpoch& epoch, FloatEpoch& result) {
       out.insert({row.satellite, row.band, row.phase});
       if (row.phase) {
         const BandDifference& band = epoch.satellites[row.satellite].bands[row.band];
-        const Eigen::Index i = state_.index(ambiguity_of(epoch.satellites[row.satellite], band));
+        const Unknown unknown = ambiguity_of(epoch.satellites[row.satellite], band);
+        const Eigen::Index i = state_.index(unknown);
+        weighting_.known.erase(unknown);
         const double variance = kUnknownAmbiguity / band.wavelength() * kUnknownAmbiguity / band.wavelength();
         state_.reset(i, band.code ? (*band.phase - *band.code) / band.wavelength() : state_.x(i), variance);
       }
@@ -194,6 +202,9 @@ void RelativeFilter::update(const DifferenceEpoch& epoch, FloatEpoch& result) {
     state_.x += result.step;
     state_.P -= W.transpose() * W;
     result.updated = true;
+    for (const Row& row : result.dd.rows)
+      if (!row.phase)
+        weighting_.known.insert(ambiguity_of(epoch.satellites[row.satellite], epoch.satellites[row.satellite].bands[row.band]));
     return;
   }
 }

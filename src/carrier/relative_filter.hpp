@@ -18,7 +18,7 @@ struct FloatEpoch {
 class RelativeFilter {
  public:
   /// Options with `air` and `noise` settled.
-  RelativeFilter(const PpkOptions& options, double interval) : options_(options), interval_(interval) {}
+  RelativeFilter(const PpkOptions& options, double interval);
 
   /// Epochs in order of time, or all of them against it.
   FloatEpoch step(const DifferenceEpoch& epoch);
@@ -33,6 +33,7 @@ class RelativeFilter {
   void update(const DifferenceEpoch& epoch, FloatEpoch& result);
 
   const PpkOptions& options_;
+  Weighting weighting_;
   double interval_;
   RelativeState state_;
   bool started_ = false;

@@ -123,7 +123,7 @@ std::optional<Eigen::Index> outlier(const Solved& s) {
 }
 
 std::optional<SinglePoint::Velocity> velocity(const Solved& s, const std::vector<CodeMeasurement>& measurements) {
-  constexpr double kDopplerSd = 0.05;  // m/s at the zenith
+  constexpr double kDopplerSd = 0.02;  // m/s at the zenith
   constexpr int kUnknowns = 4;
   Eigen::Matrix4d N = Eigen::Matrix4d::Zero();
   Eigen::Vector4d b = Eigen::Vector4d::Zero();

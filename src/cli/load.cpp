@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cstdio>
+#include <iterator>
 #include <system_error>
 
 #include "coast/geo/leap_seconds.hpp"
@@ -11,6 +12,7 @@
 #include "coast/ins/mounting.hpp"
 #include "coast/io/inspect.hpp"
 #include "coast/record/error.hpp"
+#include "ppk_summary.hpp"
 
 namespace coast::cli {
 
@@ -28,11 +30,25 @@ void check_leap_seconds(const io::TimeOptions& time, const std::string& source, 
        std::nullopt, 1});
 }
 
+// Positions from the rover's and the base's observations; what was found of them is told like the rest.
+void read_with_ppk(const RunConfig& config, Recordings& recordings) {
+  const PpkResult ppk = run_ppk(*config.ppk, {});
+  recordings.gnss = carrier::to_fixes(ppk.solution, config.ppk->rover.string());
+  recordings.gnss.events = ppk.events;
+  recordings.inspection = ppk_sentences(ppk);
+  if (recordings.gnss.fixes.empty())
+    throw InputError({config.ppk->rover.string(), 0, "no epoch with a position", "codes of four satellites or more",
+                      "Run `coast ppk` on it: its page says what is missing."});
+  recordings.imu = io::read_imu(config.imu, recordings.gnss.fixes.front().t);
+}
+
 }  // namespace
 
 Recordings load(const RunConfig& config) {
   Recordings recordings;
-  if (config.gnss.time.lacks_week() && !config.imu.time.lacks_week()) {
+  if (config.ppk) {
+    read_with_ppk(config, recordings);
+  } else if (config.gnss.time.lacks_week() && !config.imu.time.lacks_week()) {
     recordings.imu = io::read_imu(config.imu);
     recordings.gnss = io::read_gnss(config.gnss, recordings.imu.samples.front().t);
   } else {
@@ -41,7 +57,7 @@ Recordings load(const RunConfig& config) {
   }
   ins::to_body(recordings.imu, config.setup.C_s_b);
   io::Inspection inspection = io::inspect(recordings.imu, recordings.gnss);
-  recordings.inspection = std::move(inspection.sentences);
+  std::ranges::move(inspection.sentences, std::back_inserter(recordings.inspection));
   recordings.inspection_events = std::move(inspection.events);
   check_leap_seconds(config.imu.time, recordings.imu.source, recordings.imu.samples.back().t, recordings.inspection_events);
   check_leap_seconds(config.gnss.time, recordings.gnss.source, recordings.gnss.fixes.back().t, recordings.inspection_events);

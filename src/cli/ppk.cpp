@@ -26,7 +26,9 @@ void ppk(const std::filesystem::path& input, const CommonOptions& options) {
   line.clear();
   for (const record::Event& event : result.events)
     if (event.severity == record::Event::Severity::kWarning) fmt::print(stderr, "warning: {}\n", event.text);
-  if (!options.quiet) fmt::print("{}positions: {}\n", ppk_text(result), (out / "ppk.pos").string());
+  if (options.quiet) return;
+  for (const std::string& sentence : ppk_sentences(result)) fmt::print("{}\n", sentence);
+  fmt::print("positions: {}\n", (out / "ppk.pos").string());
 }
 
 }  // namespace coast::cli

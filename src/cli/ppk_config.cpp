@@ -79,6 +79,7 @@ void read_noise(const Node& map, carrier::PpkOptions& options) {
   carrier::NoiseScale noise;
   noise.phase = node->number_within("phase", 1.0, 1e-3, 100.0);
   noise.code = node->number_within("code", 1.0, 1e-3, 100.0);
+  noise.code_inflation = node->number_within("code_inflation", 1.0, 1.0, 100.0);
   options.noise = noise;
 }
 

@@ -72,7 +72,7 @@ std::vector<report::Tile> tiles(const PpkResult& result) {
   noise.label = "Noise phase / code";
   noise.value = fmt::format("{} / {}", number(result.solution.noise.phase), number(result.solution.noise.code));
   noise.explanation =
-      "Of phases and codes (with their slow multipath) over that of a geodetic receiver in the open, as the "
+      "Of phases and codes over that of a geodetic receiver in the open, as the "
       "residuals have it.";
   noise.section = "residuals";
   return all;

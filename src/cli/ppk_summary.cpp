@@ -111,7 +111,9 @@ std::string ppk_json(const PpkConfig& config, const PpkResult& result) {
                         {"from", result.base_from}};
   j["baseline_m"] = s.baseline_m;
   j["signals"] = signals_in_words(result.solution.signals);
-  j["noise_scale"] = {{"phase", result.solution.noise.phase}, {"code", result.solution.noise.code}};
+  j["noise_scale"] = {{"phase", result.solution.noise.phase},
+                      {"code", result.solution.noise.code},
+                      {"code_inflation", result.solution.noise.code_inflation}};
   j["states"] = {{"ionosphere", result.solution.air.ionosphere}, {"zenith_delay", result.solution.air.zenith_delay}};
   j["epochs"] = {{"expected", s.expected}, {"recorded", s.epochs}, {"fixed", s.fixed},
                  {"float", s.floats},      {"single", s.single},   {"none", s.none}};
@@ -131,17 +133,19 @@ std::string ppk_json(const PpkConfig& config, const PpkResult& result) {
   return j.dump(2) + "\n";
 }
 
-std::string ppk_text(const PpkResult& result) {
+std::vector<std::string> ppk_sentences(const PpkResult& result) {
   const PpkSummary s = summary_of(result);
-  std::string text = fmt::format("baseline {:.0f} m, {}\n", s.baseline_m, signals_in_words(result.solution.signals));
-  text += fmt::format("{} of {} epochs fixed ({} %), {} float, {} single, {} without position\n", s.fixed, s.expected,
-                      percent(s.fix_rate()), s.floats, s.single, s.none);
+  std::vector<std::string> sentences{
+      fmt::format("GNSS: baseline {:.0f} m, {}", s.baseline_m, signals_in_words(result.solution.signals)),
+      fmt::format("GNSS: {} of {} epochs fixed ({} %), {} float, {} single, {} without position", s.fixed, s.expected,
+                  percent(s.fix_rate()), s.floats, s.single, s.none)};
   for (std::size_t i = 1; i < s.shortfalls.size(); ++i)
-    if (s.shortfalls[i] > 0) text += fmt::format("  {} epochs: {}\n", s.shortfalls[i], in_words(static_cast<Shortfall>(i)));
+    if (s.shortfalls[i] > 0)
+      sentences.push_back(fmt::format("GNSS: {} epochs not fixed: {}", s.shortfalls[i], in_words(static_cast<Shortfall>(i))));
   if (s.separation.epochs > 0)
-    text += fmt::format("forward less backward: median {:.3f}, 95 % below {:.3f}, largest {:.3f} m\n", s.separation.median,
-                        s.separation.p95, s.separation.largest);
-  return text;
+    sentences.push_back(fmt::format("GNSS: forward less backward: median {:.3f}, 95 % below {:.3f}, largest {:.3f} m",
+                                    s.separation.median, s.separation.p95, s.separation.largest));
+  return sentences;
 }
 
 std::string residuals_csv(const PpkResult& result) {

@@ -29,8 +29,8 @@ struct PpkSummary {
 [[nodiscard]] PpkSummary summary_of(const PpkResult& result);
 /// ppk.json, schema coast.ppk_result/1
 [[nodiscard]] std::string ppk_json(const PpkConfig& config, const PpkResult& result);
-/// What the terminal shows.
-[[nodiscard]] std::string ppk_text(const PpkResult& result);
+/// What the terminal shows, line by line.
+[[nodiscard]] std::vector<std::string> ppk_sentences(const PpkResult& result);
 /// Residuals of all phases and codes, epoch by epoch: residuals.csv
 [[nodiscard]] std::string residuals_csv(const PpkResult& result);
 /// "G L1 C, L2 W; E E1 C/X": signals of rover and base

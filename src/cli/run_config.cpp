@@ -159,7 +159,10 @@ void read_imu(const Node& imu, RunConfig& run, estimate::NoiseFitChoice& choice)
 }
 
 void read_gnss(const Node& gnss, RunConfig& run, estimate::NoiseFitChoice& choice) {
-  run.gnss = io::GnssFileOptions::from(gnss);
+  if (const auto ppk = gnss.find("ppk"))
+    run.ppk = PpkConfig::from(*ppk);
+  else
+    run.gnss = io::GnssFileOptions::from(gnss);
   run.setup.time_offset_s = gnss.number_within("time_offset_s", 0.0, -100.0, 100.0);
   run.setup.filter.auxiliary.time_offset_sd_s = gnss.number_within("time_offset_sd_s", 0.0, 0.0, 10.0);
   run.setup.filter.use_gnss_velocity = gnss.flag("use_velocity", true);

@@ -13,6 +13,7 @@
 #include "coast/io/reference.hpp"
 #include "coast/study/mission.hpp"
 #include "coast/study/outage.hpp"
+#include "ppk_config.hpp"
 
 namespace coast::cli {
 
@@ -43,6 +44,7 @@ struct RunConfig {
   std::filesystem::path file;
   io::ImuFileOptions imu;
   io::GnssFileOptions gnss;
+  std::optional<PpkConfig> ppk;  ///< in place of a file of positions
   std::optional<io::ReferenceFileOptions> reference;
   Eigen::Vector3d reference_lever_arm_b = Eigen::Vector3d::Zero();
   study::Setup setup;

@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 #include <tbb/global_control.h>
 
+#include "coast/io/rinex.hpp"
 #include "coast/io/writers.hpp"
 #include "coast/io/yaml.hpp"
 #include "coast/simulate/scenario.hpp"
@@ -22,7 +23,7 @@ std::string axis_name(const Eigen::Vector3d& row) {
 }
 
 // The run.yaml that processes the recording, beside it.
-std::string run_yaml(const simulate::Scenario& scenario, const simulate::SimulatedMission& mission) {
+std::string run_yaml(const simulate::Scenario& scenario, const simulate::SimulatedMission& mission, const std::string& gnss) {
   const Eigen::Matrix3d& axes = scenario.mounting.axes;
   std::string text = fmt::format(
       "schema: coast.run/1\n"
@@ -34,15 +35,34 @@ std::string run_yaml(const simulate::Scenario& scenario, const simulate::Simulat
       "  lever_arm_m: {}\n"
       "  axes: [{}, {}, {}]\n"
       "  mounting_deg: {}\n"
-      "gnss: {{file: gnss.pos, format: rtklib-pos, time_offset_s: {:.17g}}}\n"
+      "gnss: {}\n"
       "reference: {{file: truth.nav, format: nav}}\n",
       scenario.start.week(), list(scenario.gnss.lever_arm_b), axis_name(axes.row(0)), axis_name(axes.row(1)),
-      axis_name(axes.row(2)), list(scenario.mounting.mounting / geo::kDegree), scenario.gnss.time_offset);
+      axis_name(axes.row(2)), list(scenario.mounting.mounting / geo::kDegree), gnss);
   if (mission.outages.empty()) return text;
   text += "outages:\n";
   for (const simulate::StudiedOutage& outage : mission.outages)
     text += fmt::format("  - {{start_s: {:.9f}, duration_s: {:.17g}}}\n", outage.start.sow(), outage.duration);
   return text;
+}
+
+std::string positions_yaml(const simulate::Scenario& scenario) {
+  return fmt::format("{{file: gnss.pos, format: rtklib-pos, time_offset_s: {:.17g}}}", scenario.gnss.time_offset);
+}
+
+// RINEX of rover and base, and the run file that solves them first: run-rinex.yaml.
+void write_observations(const simulate::Scenario& scenario, const simulate::SimulatedMission& mission,
+                        const std::filesystem::path& out) {
+  const simulate::SimulatedObservations observed = simulate::simulate_observations(
+      simulate::make_motion(scenario.kind, scenario.motion), scenario.start, *scenario.observations, scenario.seed);
+  io::write_observations(out / "rover.obs", observed.rover);
+  io::write_observations(out / "base.obs", observed.base);
+  io::write_navigation(out / "brdc.nav", observed.navigation);
+  io::write_text(
+      out / "run-rinex.yaml",
+      run_yaml(scenario, mission,
+               fmt::format("{{ppk: {{rover: rover.obs, base: base.obs, nav: [brdc.nav], base_position: {{ecef_m: {}}}}}}}",
+                           list(observed.r_base_e))));
 }
 
 }  // namespace
@@ -63,7 +83,8 @@ void simulate(const std::filesystem::path& scenario_yaml, std::optional<std::uin
   for (const record::NavState& nav : mission.truth.states) truth->write({nav, {}});
   truth->close();
   io::write_text(out / "error_model.yaml", scenario.error_model->yaml());
-  io::write_text(out / "run.yaml", run_yaml(scenario, mission));
+  io::write_text(out / "run.yaml", run_yaml(scenario, mission, positions_yaml(scenario)));
+  if (scenario.observations) write_observations(scenario, mission, out);
   if (!options.quiet)
     fmt::print("{} IMU samples, {} fixes; process them with\n  coast process {}\n", mission.imu.samples.size(),
                mission.gnss.fixes.size(), (out / "run.yaml").string());

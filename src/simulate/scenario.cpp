@@ -89,6 +89,50 @@ GnssOptions read_gnss(const Node& node) {
   return gnss;
 }
 
+Obstacle read_obstacle(const Node& node) {
+  Obstacle obstacle;
+  obstacle.when = read_interval(node);
+  if (const auto azimuth = node.find("azimuth_deg")) {
+    const std::vector<double> range = azimuth->numbers();
+    if (range.size() != 2 || std::min(range[0], range[1]) < 0.0 || std::max(range[0], range[1]) > 360.0)
+      throw azimuth->error("not a range of azimuths", "[from, to], clockwise from north, 0 to 360");
+    obstacle.azimuth_from = range[0] * kDegree;
+    obstacle.azimuth_to = range[1] * kDegree;
+  }
+  obstacle.elevation = node.number_within("below_deg", 90.0, 0.0, 90.0) * kDegree;
+  return obstacle;
+}
+
+ObservationOptions read_observations(const Node& node) {
+  using record::SatelliteSystem;
+  constexpr std::array kSystems{SatelliteSystem::kGps, SatelliteSystem::kGlonass, SatelliteSystem::kGalileo,
+                                SatelliteSystem::kBeidou};
+  ObservationOptions o;
+  if (const auto systems = node.find("systems")) {
+    o.systems.clear();
+    for (const Node& item : systems->items())
+      o.systems.push_back(kSystems[item.choice({"gps", "glonass", "galileo", "beidou"})]);
+    if (o.systems.empty()) throw systems->error("an empty list", "some of gps, glonass, galileo, beidou");
+  }
+  o.rate_hz = node.number_within("rate_hz", o.rate_hz, 0.001, 100.0);
+  o.base_rate_hz = node.number_within("base_rate_hz", o.rate_hz, 0.001, 100.0);
+  o.base_n = node.vector3("base_ned_m", o.base_n);
+  o.elevation_mask = node.number_within("elevation_mask_deg", 5.0, 2.0, 60.0) * kDegree;
+  o.code_sd = node.number_within("code_sd_m", o.code_sd, 0.0, 100.0);
+  o.phase_sd = node.number_within("phase_sd_m", o.phase_sd, 0.0, 1.0);
+  o.code_multipath_sd = node.number_within("code_multipath_sd_m", o.code_multipath_sd, 0.0, 100.0);
+  o.phase_multipath_sd = node.number_within("phase_multipath_sd_m", o.phase_multipath_sd, 0.0, 1.0);
+  o.multipath_time = node.number_within("multipath_time_s", o.multipath_time, 0.01, 1e5);
+  o.vertical_delay = node.number_within("ionosphere_m", o.vertical_delay, 0.0, 50.0);
+  o.ionosphere_gradient = 1e-6 * node.number_within("ionosphere_gradient_mm_per_km", 1e6 * o.ionosphere_gradient, 0.0, 500.0);
+  o.wet_zenith_sd = node.number_within("wet_zenith_sd_m", o.wet_zenith_sd, 0.0, 1.0);
+  o.slips_per_hour = node.number_within("slips_per_hour", o.slips_per_hour, 0.0, 3600.0);
+  o.flagged_share = node.number_within("flagged_share", o.flagged_share, 0.0, 1.0);
+  if (const auto obstacles = node.find("obstacles"))
+    for (const Node& item : obstacles->items()) o.obstacles.push_back(read_obstacle(item));
+  return o;
+}
+
 Scenario::Outage read_outage(const Node& node, double mission) {
   Scenario::Outage outage;
   const auto manoeuvre = node.find("manoeuvre");
@@ -148,8 +192,11 @@ Scenario Scenario::from(const Node& root, const TreeReader& read) {
     scenario.error_model_file = file->path();
     scenario.error_model = noise::ImuErrorModel::from(read(*scenario.error_model_file));
   }
-  scenario.gnss = read_gnss(root.at("gnss"));
+  const Node gnss = root.at("gnss");
+  scenario.gnss = read_gnss(gnss);
+  if (const auto observations = gnss.find("observations")) scenario.observations = read_observations(*observations);
   scenario.gnss.lever_arm_b = imu.vector3("lever_arm_m", Eigen::Vector3d::Zero());
+  if (scenario.observations) scenario.observations->lever_arm_b = scenario.gnss.lever_arm_b;
   if (const auto outages = root.find("outages"))
     for (const Node& outage : outages->items()) scenario.outages.push_back(read_outage(outage, scenario.motion.duration));
   scenario.start = read_start(root);

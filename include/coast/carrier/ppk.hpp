@@ -24,9 +24,11 @@ struct FixingOptions {
 /// 1/sin^2 elevation)^(1/2) and thermal noise by C/N0 of a phase, a hundred times that of a code.
 struct NoiseScale {
   double phase = 1.0;
-  /// Codes are taken for white although their multipath lasts minutes: this is the scale at which their average over many
-  /// epochs is as uncertain as that of the correlated ones.
-  double code = 1.0;
+  double code = 1.0;  ///< of one epoch
+  /// Multipath of a code lasts: over many epochs its average is worse by this factor than that of independent ones. The first
+  /// epoch of an ambiguity counts in full, each later one as this much less sure, so that n of them tell as much of it as n of
+  /// a Gauss-Markov process do.
+  double code_inflation = 1.0;
 };
 
 /// What the air does differently above rover and base, as states beside position and ambiguities.

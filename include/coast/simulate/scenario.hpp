@@ -17,6 +17,7 @@
 #include "coast/simulate/gnss.hpp"
 #include "coast/simulate/imu.hpp"
 #include "coast/simulate/motions.hpp"
+#include "coast/simulate/observations.hpp"
 
 namespace coast::simulate {
 
@@ -48,6 +49,12 @@ struct StudiedOutage {
 ///       velocity_sd_mps: [0.02, 0.02, 0.04]    # left out: no velocities
 ///       time_offset_s: 0.0                     # a fix tagged t is valid at t - time_offset_s
 ///       gaps: [{elapsed_s: 300, duration_s: 20}]
+///       observations:                          # left out: positions only; else codes and phases of rover and base (RINEX) too
+///         systems: [gps, galileo]              # of gps, glonass, galileo, beidou
+///         rate_hz: 1                           # of the rover; base_rate_hz of the base
+///         base_ned_m: [3000, 1000, 0]          # the base from the trajectory's origin
+///         obstacles: [{elapsed_s: 300, duration_s: 60, azimuth_deg: [60, 200], below_deg: 50}]
+///         slips_per_hour: 4                    # of each phase; and code_sd_m, phase_sd_m, code_multipath_sd_m, ...
 ///       degraded: [{elapsed_s: 500, duration_s: 30, quality: float, sd_factor: 30, stated_sd_factor: 10}]
 ///     outages: [{manoeuvre: roundabout, duration_s: 20}, {elapsed_s: 500, duration_s: 60}]   # for the run to study
 ///     start_gps: {week: 2374, sow: 208800}
@@ -60,6 +67,7 @@ struct Scenario {
   std::optional<noise::ImuErrorModel> error_model;
   ins::MountingOptions mounting;
   GnssOptions gnss;
+  std::optional<ObservationOptions> observations;
   /// An outage of a scenario: at a time, or at the first manoeuvre of a name.
   struct Outage {
     std::string manoeuvre;           ///< empty where the time is given
