@@ -15,11 +15,11 @@ struct Before {
 
 using Key = std::pair<record::Satellite, char>;
 
-/// Geometry-free jump beyond which one of the phases slipped, m: below a quarter of the smallest jump of one cycle on L1
-/// against L2 (54 mm) noise of 3 mm a phase does not come; the ionosphere over a baseline changes by less than 1 mm/s.
-double largest_jump(double step) {
-  constexpr double kNoise = 0.03, kIonosphere = 0.0003, kMost = 0.15;
-  return std::min(kNoise + kIonosphere * step, kMost);
+/// Jump of the difference of two phases beyond which one of them slipped, m. One cycle of any band is 19 cm or more; noise and
+/// multipath come to 2 cm (four sigma) at the zenith, the ionosphere over a baseline changes by less than 0.3 mm/s.
+double largest_jump(double step, double elevation) {
+  constexpr double kNoise = 0.02, kIonosphere = 0.0003, kMost = 0.12;
+  return std::min(kNoise / std::max(std::sin(elevation), 0.1) + kIonosphere * step, kMost);
 }
 
 }  // namespace
@@ -43,7 +43,7 @@ void break_arcs(std::vector<DifferenceEpoch>& epochs) {
         }
         const Before& a = before.at({satellite.satellite, first->band});
         const double jump = (*band.phase - known->second.phase) - (*first->phase - a.phase);
-        if (a.t != known->second.t || std::abs(jump) < largest_jump(epoch.t - a.t)) continue;
+        if (a.t != known->second.t || std::abs(jump) < largest_jump(epoch.t - a.t, satellite.base_elevation)) continue;
         broken[i] = true;
         broken[static_cast<std::size_t>(first - satellite.bands.data())] = true;
       }

@@ -66,10 +66,10 @@ double pdop(const FloatEpoch& updated) {
 }
 
 /// What the air does differently at both ends moves the position and is alike in all bands, so that no residual shows it. Where
-/// it is not estimated: as one range of each satellite, half a millimetre a kilometre off at the zenith, would move it.
+/// it is not estimated: as one range of each satellite, 0.7 mm a kilometre off at the zenith, would move it.
 Eigen::Matrix3d air_covariance(const FloatEpoch& updated, const RelativeState& state, const DifferenceEpoch& epoch,
                                const PpkOptions& options) {
-  constexpr double kPerMetre = 5e-7;
+  constexpr double kPerMetre = 7e-7;
   if (!options.differences.air.troposphere || (options.air && options.air->ionosphere)) return Eigen::Matrix3d::Zero();
   const double zenith = kPerMetre * (state.x.head<3>() - epoch.r_base_e).norm();
   std::map<std::size_t, Eigen::Vector4d> ways;  // with the clock

@@ -104,7 +104,8 @@ PpkSolution solve_ppk(const record::ObservationRecording& rover, const record::O
   const bool backward = options.order == PassOrder::kBackward;
   Stages stages(progress, (options.noise ? 0 : 1) + (combined ? 2 : 1));
   if (!options.noise) {
-    settled.noise = NoiseScale{};
+    constexpr NoiseScale kLenient{1.5, 2.0, 1.0};  // so that noise is not taken for outliers before it is known
+    settled.noise = kLenient;
     settled.noise = estimate_noise(solve_pass(epochs, settled, backward, stages.next()), *settled.noise);
   }
   solution.noise = *settled.noise;

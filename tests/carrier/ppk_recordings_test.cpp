@@ -1,0 +1,141 @@
+// Real baselines, against their references. Figures asked for: their descriptions, and what another program makes of them.
+
+#include <gtest/gtest.h>
+
+#include <sstream>
+
+#include "coast/carrier/ppk.hpp"
+#include "coast/geo/units.hpp"
+#include "coast/io/input.hpp"
+#include "coast/io/rinex.hpp"
+#include "support/support.hpp"
+
+namespace coast::carrier {
+namespace {
+
+using record::FixQuality;
+
+class PpkRecordings : public testing::Test {
+ protected:
+  void SetUp() override {
+    if (!test::data_dir()) GTEST_SKIP() << "COAST_DATA is not set: no recordings here";
+  }
+  static PpkSolution solve(const std::string& rover, const std::string& base, const std::vector<std::string>& navigation,
+                           const Eigen::Vector3d& r_base_e, const PpkOptions& options) {
+    std::vector<std::filesystem::path> files;
+    for (const std::string& name : navigation) files.push_back(*test::data_dir() / name);
+    const BroadcastOrbits orbits(io::read_navigation(files));
+    return solve_ppk(
+        io::read_observations(*test::data_dir() / rover), io::read_observations(*test::data_dir() / base), orbits,
+        [&](geo::GpsTime) { return std::optional(r_base_e); }, options);
+  }
+  static std::size_t count(const PpkSolution& solution, FixQuality quality) {
+    return static_cast<std::size_t>(std::ranges::count(solution.epochs, quality, &PpkEpoch::quality));
+  }
+};
+
+TEST_F(PpkRecordings, StaticBaselineOfGeonet) {
+  PpkOptions options;
+  const Eigen::Vector3d reference(-3976219.664, 3382372.541, 3652513.055);  // good to about 1 cm
+  for (const double mask : {10.0, 15.0}) {
+    options.differences.elevation_mask = mask * geo::kDegree;
+    const PpkSolution solution =
+        solve("rinex-gsi-2005-092/07590920.05o", "rinex-gsi-2005-092/30400920.05o", {"rinex-gsi-2005-092/30400920.05n"},
+              {-3978242.4348, 3382841.1715, 3649902.7667}, options);
+    ASSERT_EQ(solution.epochs.size(), 120U);
+    // With 15 degrees five satellites in a row are left at the end.
+    EXPECT_GE(count(solution, FixQuality::kFixed), mask < 12.0 ? 119U : 114U);
+    for (const PpkEpoch& epoch : solution.epochs)
+      if (epoch.quality == FixQuality::kFixed) {
+        EXPECT_LT((epoch.r_e - reference).norm(), 0.05) << to_string(epoch.t);
+      }
+  }
+}
+
+TEST_F(PpkRecordings, StaticBaselineAsOnePoint) {
+  PpkOptions options;
+  options.motion = RoverMotion::kStatic;
+  const PpkSolution solution = solve("rinex-gsi-2005-092/07590920.05o", "rinex-gsi-2005-092/30400920.05o",
+                                     {"rinex-gsi-2005-092/30400920.05n"}, {-3978242.4348, 3382841.1715, 3649902.7667}, options);
+  EXPECT_LT((solution.epochs.back().r_e - Eigen::Vector3d(-3976219.664, 3382372.541, 3652513.055)).norm(), 0.015);
+}
+
+TEST_F(PpkRecordings, MovingCarIsFixedWithAnyMask) {
+  for (const double mask : {10.0, 15.0, 20.0}) {
+    PpkOptions options;
+    options.differences.elevation_mask = mask * geo::kDegree;
+    const auto of = [&](PassOrder order) {
+      options.order = order;
+      return solve("rinex-kinematic-2021-265/SEPT265G.21O.gz", "rinex-kinematic-2021-265/3034265G.21O.gz",
+                   {"rinex-kinematic-2021-265/SEPT2650.21P.gz"}, {-3959400.631, 3385704.533, 3667523.111}, options);
+    };
+    EXPECT_GE(count(of(PassOrder::kForward), FixQuality::kFixed), 342U) << mask;
+    const PpkSolution both = of(PassOrder::kCombined);
+    EXPECT_EQ(count(both, FixQuality::kFixed), 360U) << mask;
+    for (const PpkEpoch& epoch : both.epochs)
+      if (epoch.both_fixed) {
+        EXPECT_LT(epoch.separation_n->norm(), 0.1) << mask << " " << to_string(epoch.t);
+      }
+    // At rest at the begin; the reference is another author's, (-8, -19, +11) mm from an independent solution.
+    const Eigen::Vector3d start = geo::ecef_from_geodetic({35.342058098 * geo::kDegree, 139.521986657 * geo::kDegree, 47.5515});
+    for (std::size_t i = 0; i < 35; ++i) EXPECT_LT((both.epochs[i].r_e - start).norm(), 0.05) << mask << " " << i;
+  }
+}
+
+/// The simulator's own file: time since the start, ..., position from column 5, velocity from 8.
+std::vector<std::pair<double, Eigen::Matrix<double, 6, 1>>> truth_of_spirent() {
+  std::vector<std::pair<double, Eigen::Matrix<double, 6, 1>>> truth;
+  const std::string text = io::read_all(*test::data_dir() / "spirent-rtk-none/Rover-dynamic_PVA_Spirent.csv.gz");
+  std::istringstream lines(text);
+  std::string line;
+  std::getline(lines, line);
+  while (std::getline(lines, line)) {
+    std::istringstream fields(line);
+    std::string field;
+    std::vector<double> values;
+    while (std::getline(fields, field, ',')) values.push_back(std::stod(field));
+    Eigen::Matrix<double, 6, 1> state;
+    for (Eigen::Index i = 0; i < 6; ++i) state(i) = values.at(static_cast<std::size_t>(4 + i));
+    truth.emplace_back(values.at(3), state);
+  }
+  return truth;
+}
+
+TEST_F(PpkRecordings, SimulatedConstellationWithExactTruth) {
+  PpkOptions options;
+  options.differences.air.troposphere = false;
+  const PpkSolution solution =
+      solve("spirent-rtk-none/Rover-dynamic_MO_Spirent.obs.gz", "spirent-rtk-none/Base-static_MO_Spirent.obs.gz",
+            {"spirent-rtk-none/RINEX_GN_Spirent.23N", "spirent-rtk-none/RINEX_EN_Spirent.23L"},
+            {4157177.06580187, 671230.476590636, 4774767.03105544}, options);
+  EXPECT_EQ(count(solution, FixQuality::kFixed), solution.epochs.size());
+  const auto truth = truth_of_spirent();
+  std::size_t compared = 0;
+  for (const PpkEpoch& epoch : solution.epochs) {
+    const auto at = std::ranges::lower_bound(truth, std::fmod(epoch.shown.sow(), 86400.0) - 1e-3, {},
+                                             [](const auto& row) { return row.first; });
+    if (at == truth.end() || std::abs(at->first - std::fmod(epoch.shown.sow(), 86400.0)) > 1e-3) continue;
+    ++compared;
+    const double after = epoch.t - epoch.shown;  // the receiver's clock
+    EXPECT_LT((epoch.r_e - at->second.head<3>() - after * at->second.tail<3>()).norm(), 1e-3);
+    ASSERT_TRUE(epoch.velocity);
+    EXPECT_LT((epoch.velocity->v_e - at->second.tail<3>()).norm(), 0.02);
+  }
+  EXPECT_GT(compared, 590U);
+}
+
+TEST_F(PpkRecordings, StaticRoverOfTheSimulatedConstellation) {
+  PpkOptions options;
+  options.differences.air.troposphere = false;
+  const PpkSolution solution =
+      solve("spirent-rtk-none/Rover-static-2km-east_MO_Spirent.obs.gz", "spirent-rtk-none/Base-static_MO_Spirent.obs.gz",
+            {"spirent-rtk-none/RINEX_GN_Spirent.23N", "spirent-rtk-none/RINEX_EN_Spirent.23L"},
+            {4157177.06580187, 671230.476590636, 4774767.03105544}, options);
+  for (const PpkEpoch& epoch : solution.epochs) {
+    EXPECT_EQ(epoch.quality, FixQuality::kFixed);
+    EXPECT_LT((epoch.r_e - Eigen::Vector3d(4156857.1195929, 673209.028774142, 4774767.03105544)).norm(), 1e-3);
+  }
+}
+
+}  // namespace
+}  // namespace coast::carrier

@@ -1,0 +1,204 @@
+// Carrier-phase positions against the truth of simulated missions. The simulator shares orbits and a standard atmosphere with
+// the solver; light times, clocks, ambiguities, noise and slips are its own.
+
+#include "coast/carrier/ppk.hpp"
+
+#include <gtest/gtest.h>
+
+#include "coast/record/error.hpp"
+#include "simulated.hpp"
+
+namespace coast::carrier {
+namespace {
+
+using record::FixQuality;
+using record::SatelliteSystem;
+
+TEST(Ppk, MeetsTheTruthToAMillimetreWithoutErrors) {
+  const SimulatedBaseline mission("car_roundabout", 400.0, error_free());
+  const PpkSolution solution = mission.solve({});
+  const Errors e = errors_of(mission, solution);
+  EXPECT_EQ(e.fixed, solution.epochs.size());
+  // Phases are rounded to 0.001 cycles.
+  EXPECT_LT(e.largest_fixed, 2e-3);
+  EXPECT_FALSE(solution.air.ionosphere);  // 3 km
+}
+
+TEST(Ppk, FixesARealisticCarWithHonestSigmas) {
+  simulate::ObservationOptions options;
+  options.phase_multipath_sd = 0.001;
+  options.slips_per_hour = 20.0;
+  std::size_t epochs = 0, fixed = 0, wrong = 0;
+  double nees = 0.0;
+  for (const std::uint64_t seed : {1U, 2U, 3U}) {
+    const SimulatedBaseline mission("car_roundabout", 600.0, options, seed);
+    const Errors e = errors_of(mission, mission.solve({}));
+    epochs += mission.observed.rover.epochs.size();
+    fixed += e.fixed;
+    wrong += e.wrong;
+    nees += e.fixed_nees / 3.0;
+    EXPECT_LT(e.velocity_rms, 0.1) << seed;  // of a car at 1 Hz
+  }
+  EXPECT_GE(fixed, epochs * 99 / 100);
+  EXPECT_EQ(wrong, 0U);
+  // Sigmas within a factor of 1.5; errors last (multipath, air), so that three missions are few independent ones.
+  EXPECT_GT(nees, 1.0 / (1.5 * 1.5));
+  EXPECT_LT(nees, 1.5 * 1.5);
+}
+
+TEST(Ppk, FloatsAreAsGoodAsTheySay) {
+  PpkOptions options;
+  options.fixing.wanted = false;
+  options.order = PassOrder::kForward;
+  double nees = 0.0;
+  constexpr int kSeeds = 6;
+  for (std::uint64_t seed = 1; seed <= kSeeds; ++seed) {
+    const SimulatedBaseline mission("car_roundabout", 400.0, simulate::ObservationOptions{}, seed);
+    nees += errors_of(mission, mission.solve(options)).float_nees / kSeeds;
+  }
+  // One ambiguity solution a mission: 3 x 6 errors, about independent; within a factor of 1.5 in sigma.
+  EXPECT_GT(nees, 1.0 / (1.5 * 1.5));
+  EXPECT_LT(nees, 1.5 * 1.5);
+}
+
+TEST(Ppk, ComesBackBehindBridgesAndSaysWhyItWasGone) {
+  simulate::ObservationOptions options;
+  options.phase_multipath_sd = 0.001;
+  options.obstacles = {{{200.0, 20.0}, 0.0, 6.2831, 80.0 * geo::kDegree},  // a tunnel, nearly
+                       {{300.0, 60.0}, 60.0 * geo::kDegree, 240.0 * geo::kDegree, 60.0 * geo::kDegree}};
+  const SimulatedBaseline mission("car_roundabout", 500.0, options);
+  const PpkSolution solution = mission.solve({});
+  const Errors e = errors_of(mission, solution);
+  EXPECT_EQ(e.wrong, 0U);
+  EXPECT_GE(e.fixed, solution.epochs.size() - 25);
+  for (const PpkEpoch& epoch : solution.epochs) {
+    const double t = epoch.shown - mission.start;
+    const bool in_tunnel = t >= 200.0 && t < 220.0;
+    if (in_tunnel) {
+      EXPECT_NE(epoch.shortfall, Shortfall::kNone) << t;
+    }
+    if (epoch.quality != FixQuality::kFixed) {
+      EXPECT_NE(epoch.shortfall, Shortfall::kNone) << t;
+    }
+    if (epoch.quality == FixQuality::kFixed) {
+      EXPECT_EQ(epoch.shortfall, Shortfall::kNone) << t;
+    }
+  }
+}
+
+TEST(Ppk, SolvesSystemsOfWhichNoRecordingIsAtHand) {
+  simulate::ObservationOptions options;
+  options.phase_multipath_sd = 0.001;
+  for (const auto& systems :
+       {std::vector{SatelliteSystem::kBeidou}, std::vector{SatelliteSystem::kGps, SatelliteSystem::kGlonass},
+        std::vector{SatelliteSystem::kGalileo, SatelliteSystem::kBeidou}}) {
+    options.systems = systems;
+    const SimulatedBaseline mission("car_roundabout", 400.0, options);
+    const Errors e = errors_of(mission, mission.solve({}));
+    EXPECT_GE(e.fixed, 390U) << record::name_of(systems.back());
+    EXPECT_EQ(e.wrong, 0U) << record::name_of(systems.back());
+  }
+}
+
+TEST(Ppk, GlonassAloneStaysFloat) {
+  simulate::ObservationOptions options;
+  options.systems = {SatelliteSystem::kGlonass};
+  const SimulatedBaseline mission("car_roundabout", 400.0, options);
+  const PpkSolution solution = mission.solve({});
+  const Errors e = errors_of(mission, solution);
+  EXPECT_EQ(e.fixed, 0U);
+  EXPECT_GT(e.floats, 390U);
+  EXPECT_EQ(solution.epochs.back().shortfall, Shortfall::kFewAmbiguities);
+}
+
+TEST(Ppk, EstimatesTheIonosphereOverLongBaselines) {
+  simulate::ObservationOptions options;
+  options.base_n = {25000.0, 0.0, 0.0};
+  options.code_multipath_sd = 0.1;
+  options.phase_multipath_sd = 0.0005;
+  const SimulatedBaseline mission("car_roundabout", 900.0, options);
+  PpkOptions with;
+  const PpkSolution solution = mission.solve(with);
+  EXPECT_TRUE(solution.air.ionosphere);
+  EXPECT_TRUE(solution.air.zenith_delay);
+  const Errors e = errors_of(mission, solution);
+  EXPECT_GE(e.fixed, solution.epochs.size() / 2);
+  EXPECT_LE(e.wrong, solution.epochs.size() / 100);
+}
+
+TEST(Ppk, NoiseScalesFollowTheNoise) {
+  simulate::ObservationOptions quiet;
+  quiet.code_multipath_sd = quiet.phase_multipath_sd = quiet.ionosphere_gradient = quiet.wet_zenith_sd = 0.0;
+  simulate::ObservationOptions loud = quiet;
+  loud.code_sd *= 3.0;
+  loud.phase_sd *= 3.0;
+  const NoiseScale a = SimulatedBaseline("car_roundabout", 400.0, quiet).solve({}).noise;
+  const NoiseScale b = SimulatedBaseline("car_roundabout", 400.0, loud).solve({}).noise;
+  // Thousands of residuals know a scale to a percent; phases are quantised, elevations weighted not quite as simulated.
+  EXPECT_NEAR(b.phase / a.phase, 3.0, 0.15);
+  EXPECT_NEAR(b.code / a.code, 3.0, 0.15);
+  EXPECT_NEAR(a.code_inflation, 1.0, 0.1);  // white
+}
+
+TEST(Ppk, MovingBaseGivesTheBaseline) {
+  const SimulatedBaseline mission("car_roundabout", 400.0, [] {
+    simulate::ObservationOptions options;
+    options.base_n = {30.0, 10.0, 0.0};
+    options.phase_multipath_sd = 0.001;
+    return options;
+  }());
+  const BroadcastOrbits orbits(mission.observed.navigation);
+  const auto own = single_points(mission.observed.base, orbits, {}, 0.17);
+  std::map<geo::GpsTime, Eigen::Vector3d> positions;
+  for (std::size_t i = 0; i < own.size(); ++i)
+    if (own[i]) positions[mission.observed.base.epochs[i].t] = own[i]->r_e;
+  const PpkSolution solution = solve_ppk(mission.observed.rover, mission.observed.base, orbits,
+                                         [&](geo::GpsTime t) -> std::optional<Eigen::Vector3d> {
+                                           const auto found = positions.find(t);
+                                           return found == positions.end() ? std::nullopt : std::optional(found->second);
+                                         },
+                                         {});
+  std::size_t fixed = 0;
+  for (const PpkEpoch& epoch : solution.epochs) {
+    if (epoch.quality != FixQuality::kFixed) continue;
+    ++fixed;
+    const Eigen::Vector3d baseline = epoch.r_e - epoch.r_base_e;
+    const Eigen::Vector3d truth = mission.truth(epoch.t).r_eb_e - mission.observed.r_base_e;
+    // A base that is some metres off turns the baseline by metres over 20 000 km.
+    EXPECT_LT((baseline - truth).norm(), 0.05);
+  }
+  EXPECT_GE(fixed, 390U);
+}
+
+TEST(Ppk, SaysWhatIsMissing) {
+  const SimulatedBaseline mission("car_roundabout", 360.0, simulate::ObservationOptions{});
+  const BroadcastOrbits orbits(mission.observed.navigation);
+  const BasePosition position = [&](geo::GpsTime) { return std::optional(mission.observed.r_base_e); };
+  record::ObservationRecording later = mission.observed.base;
+  for (record::ObservationEpoch& epoch : later.epochs) epoch.t = epoch.t + 86400.0;
+  EXPECT_THROW(static_cast<void>(solve_ppk(mission.observed.rover, later, orbits, position, {})), InputError);
+  PpkOptions other;
+  other.differences.systems = {SatelliteSystem::kBeidou};
+  EXPECT_THROW(static_cast<void>(solve_ppk(mission.observed.rover, mission.observed.base, orbits, position, other)),
+               InputError);
+  record::NavigationRecording none;
+  EXPECT_THROW(static_cast<void>(solve_ppk(mission.observed.rover, mission.observed.base, BroadcastOrbits(none), position, {})),
+               InputError);
+}
+
+TEST(Ppk, FixesBecomeARecordingForTheFilter) {
+  const SimulatedBaseline mission("car_roundabout", 360.0, simulate::ObservationOptions{});
+  const PpkSolution solution = mission.solve({});
+  const record::GnssRecording fixes = to_fixes(solution, "rover.obs");
+  ASSERT_EQ(fixes.fixes.size(), solution.epochs.size());
+  const record::GnssFix& fix = fixes.fixes[100];
+  const PpkEpoch& epoch = solution.epochs[100];
+  EXPECT_EQ(fix.r_ea_e, epoch.r_e);
+  EXPECT_NEAR(fix.position_cov_n.trace(), epoch.covariance_e.trace(), 1e-12);
+  EXPECT_EQ(fix.quality, FixQuality::kFixed);
+  ASSERT_TRUE(fix.velocity);
+  EXPECT_NEAR(fix.velocity->v_ea_n.norm(), epoch.velocity->v_e.norm(), 1e-9);
+}
+
+}  // namespace
+}  // namespace coast::carrier
