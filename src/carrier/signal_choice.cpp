@@ -64,6 +64,9 @@ SignalChoice choose_signals(const ObservationRecording& rover, const Observation
         choice[band] = {rover_tracking, base_tracking};
       }
   }
+  // Galileo's E5 is E5a and E5b together: beside both it tells nothing new.
+  const auto e5a = choice.find({SatelliteSystem::kGalileo, '5'}), e5b = choice.find({SatelliteSystem::kGalileo, '7'});
+  if (e5a != choice.end() && e5b != choice.end()) choice.erase({SatelliteSystem::kGalileo, '8'});
   return choice;
 }
 

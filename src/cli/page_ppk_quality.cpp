@@ -21,13 +21,9 @@ report::Table causes(const PpkSummary& s) {
   table.id = "causes";
   table.title = "Why epochs are not fixed";
   table.columns = {{"cause", "", false}, {"epochs", ""}, {"share", "%"}};
-  for (std::size_t i = 1; i < s.shortfalls.size(); ++i)
-    if (s.shortfalls[i] > 0)
-      table.rows.push_back(cells({std::string(in_words(static_cast<carrier::Shortfall>(i))), fmt::format("{}", s.shortfalls[i]),
-                                  percent(static_cast<double>(s.shortfalls[i]) / static_cast<double>(s.expected))}));
-  if (s.expected > s.epochs)
-    table.rows.push_back(cells({"not recorded by the rover", fmt::format("{}", s.expected - s.epochs),
-                                percent(static_cast<double>(s.expected - s.epochs) / static_cast<double>(s.expected))}));
+  for (const auto& [cause, epochs] : s.causes())
+    table.rows.push_back(
+        cells({cause, fmt::format("{}", epochs), percent(static_cast<double>(epochs) / static_cast<double>(s.expected))}));
   return table;
 }
 

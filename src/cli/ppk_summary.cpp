@@ -61,6 +61,14 @@ double PpkSummary::fix_rate() const {
   return expected == 0 ? 0.0 : static_cast<double>(fixed) / static_cast<double>(expected);
 }
 
+std::vector<std::pair<std::string, std::size_t>> PpkSummary::causes() const {
+  std::vector<std::pair<std::string, std::size_t>> all;
+  if (expected > epochs) all.emplace_back("nothing recorded by the rover", expected - epochs);
+  for (std::size_t i = 1; i < shortfalls.size(); ++i)
+    if (shortfalls[i] > 0) all.emplace_back(in_words(static_cast<Shortfall>(i)), shortfalls[i]);
+  return all;
+}
+
 PpkSummary summary_of(const PpkResult& result) {
   PpkSummary summary;
   const std::vector<PpkEpoch>& epochs = result.solution.epochs;
@@ -119,8 +127,7 @@ std::string ppk_json(const PpkConfig& config, const PpkResult& result) {
                  {"float", s.floats},      {"single", s.single},   {"none", s.none}};
   j["fix_rate"] = s.fix_rate();
   Json& why = j["not_fixed_because"] = Json::object();
-  for (std::size_t i = 1; i < s.shortfalls.size(); ++i)
-    if (s.shortfalls[i] > 0) why[std::string(in_words(static_cast<Shortfall>(i)))] = s.shortfalls[i];
+  for (const auto& [cause, epochs] : s.causes()) why[cause] = epochs;
   j["fixed_sd_m"] = {s.fixed_sd_n.x(), s.fixed_sd_n.y(), s.fixed_sd_n.z()};
   if (s.separation.epochs > 0)
     j["forward_backward_m"] = {{"epochs", s.separation.epochs},
@@ -139,9 +146,8 @@ std::vector<std::string> ppk_sentences(const PpkResult& result) {
       fmt::format("GNSS: baseline {:.0f} m, {}", s.baseline_m, signals_in_words(result.solution.signals)),
       fmt::format("GNSS: {} of {} epochs fixed ({} %), {} float, {} single, {} without position", s.fixed, s.expected,
                   percent(s.fix_rate()), s.floats, s.single, s.none)};
-  for (std::size_t i = 1; i < s.shortfalls.size(); ++i)
-    if (s.shortfalls[i] > 0)
-      sentences.push_back(fmt::format("GNSS: {} epochs not fixed: {}", s.shortfalls[i], in_words(static_cast<Shortfall>(i))));
+  for (const auto& [cause, epochs] : s.causes())
+    sentences.push_back(fmt::format("GNSS: {} epochs not fixed: {}", epochs, cause));
   if (s.separation.epochs > 0)
     sentences.push_back(fmt::format("GNSS: forward less backward: median {:.3f}, 95 % below {:.3f}, largest {:.3f} m",
                                     s.separation.median, s.separation.p95, s.separation.largest));

@@ -24,6 +24,8 @@ struct PpkSummary {
   std::size_t left_out = 0, used = 0;  ///< phases and codes
 
   [[nodiscard]] double fix_rate() const;  ///< of the expected epochs
+  /// Why epochs are not fixed, in words, and how many; those first that the rover did not record.
+  [[nodiscard]] std::vector<std::pair<std::string, std::size_t>> causes() const;
 };
 
 [[nodiscard]] PpkSummary summary_of(const PpkResult& result);

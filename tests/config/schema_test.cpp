@@ -26,7 +26,7 @@ TEST(Schemas, AreOfOneDraft) {
 
 TEST(Schemas, OwnExamplesAreValid) {
   for (const char* name : {"calibration", "calibration_run", "estimator_study", "estimator_study_result", "imu_error_model",
-                           "run", "scenario", "study", "summary"}) {
+                           "ppk", "ppk_result", "run", "scenario", "study", "summary"}) {
     const json examples = test::schema(name).at("examples");
     ASSERT_FALSE(examples.empty()) << name;
     for (const json& example : examples) test::expect_valid(name, example, "example");
@@ -82,6 +82,15 @@ TEST(Schemas, RefuseWhatTheProgramRefuses) {
   EXPECT_FALSE(refused("estimator_study_result", {{"more", 1}}));  // outputs may gain keys
   EXPECT_TRUE(refused("scenario", {{"trajectory", {{"kind", "rocket"}}}}));
   EXPECT_TRUE(refused("scenario", {{"schema", nullptr}}));
+  EXPECT_FALSE(refused(
+      "run", {{"gnss", {{"file", nullptr}, {"format", nullptr}, {"ppk", {{"rover", "r"}, {"base", "b"}, {"nav", "n"}}}}}}));
+  EXPECT_TRUE(refused("run", {{"gnss", {{"file", nullptr}}}}));
+  EXPECT_FALSE(refused("ppk", {{"base_position", "header"}, {"fix", false}}));
+  EXPECT_TRUE(refused("ppk", {{"nav", nullptr}}));
+  EXPECT_TRUE(refused("ppk", {{"base_position", {{"ecef_m", {1, 2}}}}}));
+  EXPECT_TRUE(refused("ppk", {{"elevation_mask_deg", 80}}));
+  EXPECT_FALSE(refused("ppk_result", {{"more", 1}}));  // outputs may gain keys
+  EXPECT_TRUE(refused("ppk_result", {{"fix_rate", 2}}));
   EXPECT_TRUE(refused("summary", {{"gnss", {{"used", -1}}}}));
   EXPECT_FALSE(refused("summary", {{"more", 1}}));  // outputs may gain keys
 }
