@@ -42,8 +42,11 @@ std::vector<BaseEpoch> residuals_of(const std::vector<TrackedEpoch>& base, const
           epoch.satellites.emplace_back(BaseSatellite{s.satellite, path.direction.elevation, path.wet_mapping, s.bands});
       const double modelled = path.modelled(s.state);
       for (TrackedBand& band : of.bands) {
-        if (band.code) *band.code -= modelled;
-        if (band.phase) *band.phase -= modelled;
+        double expected = modelled;
+        if (options.base_antenna)
+          expected += phase_centre_correction(*options.base_antenna, s.satellite.system, band.band, path.direction);
+        if (band.code) *band.code -= expected;
+        if (band.phase) *band.phase -= expected;
       }
     }
   }

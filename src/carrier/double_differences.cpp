@@ -51,6 +51,9 @@ std::vector<Candidate> candidates(const DifferenceEpoch& epoch, const RelativeSt
     const double modelled = path.modelled(satellite.state);
     for (std::size_t b = 0; b < satellite.bands.size(); ++b) {
       const BandDifference& band = satellite.bands[b];
+      double expected = modelled;
+      if (options.rover_antenna)
+        expected += phase_centre_correction(*options.rover_antenna, satellite.satellite.system, band.band, path.direction);
       for (const bool phase : {true, false}) {
         const std::optional<double>& observed = phase ? band.phase : band.code;
         if (!observed || left_out.contains({s, b, phase})) continue;
@@ -58,7 +61,7 @@ std::vector<Candidate> candidates(const DifferenceEpoch& epoch, const RelativeSt
         const double scale = phase ? weighting.noise.phase : code_scale(satellite, band, weighting);
         all.push_back({{phase, satellite.satellite.system, band.band},
                        {s, b, phase, scale * sd, path.direction},
-                       *observed - modelled,
+                       *observed - expected,
                        path});
       }
     }

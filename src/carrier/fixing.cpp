@@ -123,9 +123,9 @@ std::vector<Satellite> by_elevation(const std::vector<Fixable>& set) {
 }
 
 /// Partial fixing. At least half of the ambiguities stay: few integers that stand out are often wrong.
-class Search {
+class PartialFixing {
  public:
-  Search(const std::vector<Fixable>& all, const RelativeState& state, const FixingOptions& options)
+  PartialFixing(const std::vector<Fixable>& all, const RelativeState& state, const FixingOptions& options)
       : all_(all), state_(state), options_(options), best_(attempt(all, state)) {}
 
   /// All; else without those that had to stay float last time; else, where the integers are too uncertain, without the least
@@ -182,7 +182,7 @@ class Search {
 FixedSolution AmbiguityFixing::fix(const DifferenceEpoch& epoch, const FloatEpoch& updated, const RelativeState& state) {
   FixedSolution solution;
   const std::vector<Fixable> all = fixable(epoch, updated, state, options_.elevation_mask);
-  const std::optional<Attempt> best = Search(all, state, options_).run(without_);
+  const std::optional<Attempt> best = PartialFixing(all, state, options_).run(without_);
   if (!best) {
     solution.shortfall = Shortfall::kFewAmbiguities;
     return solution;

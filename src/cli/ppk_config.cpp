@@ -95,6 +95,10 @@ PpkConfig PpkConfig::from(const Node& map) {
   config.rover = map.at("rover").path();
   config.base = map.at("base").path();
   config.navigation = paths(map.at("nav"));
+  if (const auto sp3 = map.find("sp3")) config.sp3 = paths(*sp3);
+  if (const auto clocks = map.find("clk")) config.clocks = paths(*clocks);
+  if (!config.clocks.empty() && config.sp3.empty()) throw map.at("clk").error("clocks without orbits", "sp3 beside clk");
+  if (const auto antex = map.find("antex")) config.antex = antex->path();
   config.base_at = base_position(map);
   carrier::PpkOptions& o = config.options;
   o.differences.systems = systems(map, o.differences.systems);

@@ -2,6 +2,7 @@
 // The map `ppk` of run.yaml, or a file of its own: what `coast ppk` reads.
 
 #include <filesystem>
+#include <optional>
 #include <variant>
 #include <vector>
 
@@ -21,6 +22,8 @@ struct PpkConfig {
   config::Node map;
   std::filesystem::path rover, base;
   std::vector<std::filesystem::path> navigation;
+  std::vector<std::filesystem::path> sp3, clocks;  ///< precise orbits; clocks finer than theirs
+  std::optional<std::filesystem::path> antex;      ///< phase centres of both antennas
   BaseAt base_at;
   bool broadcast_ionosphere = true;  ///< of single-point positions
   carrier::PpkOptions options;

@@ -7,6 +7,7 @@
 #include <memory>
 
 #include "coast/geo/earth.hpp"
+#include "coast/io/products.hpp"
 #include "coast/io/rinex.hpp"
 #include "coast/record/error.hpp"
 #include "coast/study/paired.hpp"
@@ -85,6 +86,25 @@ carrier::BasePosition base_position(const PpkConfig& config, const ObservationRe
   return [r_e = result.r_base_e](geo::GpsTime) { return std::optional(r_e); };
 }
 
+/// The calibrations of both antennas. Where one has none neither is used: what both have in common would no longer cancel.
+void add_antennas(const std::filesystem::path& file, const ObservationRecording& rover, const ObservationRecording& base,
+                  carrier::DifferenceOptions& options, record::Events& events) {
+  const record::AntennaTable table = io::read_antex(file);
+  events.insert(events.end(), table.events.begin(), table.events.end());
+  const record::AntennaCalibration* of_rover = carrier::find_antenna(table, rover.antenna);
+  const record::AntennaCalibration* of_base = carrier::find_antenna(table, base.antenna);
+  if (of_rover != nullptr && of_base != nullptr) {
+    options.rover_antenna = *of_rover;
+    options.base_antenna = *of_base;
+    return;
+  }
+  const ObservationRecording& without = of_rover == nullptr ? rover : base;
+  events.push_back(
+      {record::Event::Severity::kWarning, "antenna_unknown",
+       fmt::format("{}: no antenna \"{}\" of {}; phase centres are left out", table.source, without.antenna, without.source),
+       std::nullopt, 1});
+}
+
 /// Median step between epochs, s.
 double interval(const ObservationRecording& receiver) {
   std::vector<double> steps;
@@ -106,7 +126,11 @@ PpkResult run_ppk(const PpkConfig& config, const std::function<void(double)>& pr
   const record::NavigationRecording navigation = io::read_navigation(config.navigation);
   add_channels(navigation, rover);
   add_channels(navigation, base);
-  const carrier::BroadcastOrbits orbits(navigation);
+  const carrier::BroadcastOrbits broadcast(navigation);
+  std::optional<carrier::PreciseEphemerides> precise;
+  if (!config.sp3.empty())
+    precise.emplace(io::read_sp3(config.sp3), config.clocks.empty() ? record::PreciseClocks{} : io::read_clocks(config.clocks));
+  const carrier::Orbits& orbits = precise ? static_cast<const carrier::Orbits&>(*precise) : broadcast;
   carrier::PpkOptions options = config.options;
   if (config.broadcast_ionosphere) options.differences.air.ionosphere = navigation.gps_ionosphere;
   PpkResult result;
@@ -114,8 +138,9 @@ PpkResult run_ppk(const PpkConfig& config, const std::function<void(double)>& pr
   result.base = in_words(base);
   result.interval_s = interval(rover);
   const carrier::BasePosition position = base_position(config, base, orbits, result);
+  if (config.antex) add_antennas(*config.antex, rover, base, options.differences, result.events);
   result.solution = carrier::solve_ppk(rover, base, orbits, position, options, progress);
-  const std::array<const record::Events*, 5> all{&rover.events, &base.events, &navigation.events, &orbits.events(),
+  const std::array<const record::Events*, 5> all{&rover.events, &base.events, &navigation.events, &broadcast.events(),
                                                  &result.solution.events};
   for (const record::Events* events : all) result.events.insert(result.events.end(), events->begin(), events->end());
   return result;

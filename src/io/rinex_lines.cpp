@@ -99,7 +99,6 @@ std::optional<record::Satellite> satellite_field(std::string_view text, char sys
 }
 
 std::optional<geo::GpsTime> gps_time(const geo::Calendar& calendar, RinexTime scale) {
-  constexpr double kGpsMinusBeidou = 14.0;  // s
   try {
     switch (scale) {
       case RinexTime::kGps:

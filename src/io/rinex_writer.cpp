@@ -9,6 +9,7 @@
 
 #include "coast/io/rinex.hpp"
 #include "coast/io/writers.hpp"
+#include "rinex_lines.hpp"
 
 namespace coast::io {
 
@@ -19,7 +20,6 @@ using record::Satellite;
 using record::SatelliteSystem;
 using record::Signal;
 
-constexpr double kGpsMinusBeidou = 14.0;  // s
 constexpr int kGpsWeekMinusBeidou = 1356;
 
 /// "text ...   LABEL": sixty columns of text.
@@ -28,7 +28,7 @@ std::string header_line(const std::string& text, std::string_view label) {
 }
 
 std::string first_line(RinexVersion version, const char* type, const char* system) {
-  return header_line(fmt::format("{:>9}{:11}{:<20}{:<20}", version == RinexVersion::k3_05 ? "3.05" : "4.01", "", type, system),
+  return header_line(fmt::format("{:>9}{:11}{:<20}{:<20}", version == RinexVersion::kThree ? "3.05" : "4.01", "", type, system),
                      "RINEX VERSION / TYPE") +
          header_line(fmt::format("{:<20}", "coast"), "PGM / RUN BY / DATE");
 }
@@ -155,7 +155,7 @@ std::string number19(double value) {
 
 std::string message_head(Satellite satellite, const geo::Calendar& c, RinexVersion version, const char* kind) {
   std::string head;
-  if (version == RinexVersion::k4_01) head = fmt::format("> EPH {} {}\n", to_string(satellite), kind);
+  if (version == RinexVersion::kFour) head = fmt::format("> EPH {} {}\n", to_string(satellite), kind);
   return head + fmt::format("{} {:04} {:02} {:02} {:02} {:02} {:02.0f}", to_string(satellite), c.year, c.month, c.day, c.hour,
                             c.minute, c.second);
 }
@@ -249,7 +249,7 @@ void write_observations(const std::filesystem::path& file, const record::Observa
 
 void write_navigation(const std::filesystem::path& file, const record::NavigationRecording& navigation, RinexVersion version) {
   std::string text = first_line(version, "N: GNSS NAV DATA", "M: MIXED");
-  if (navigation.gps_ionosphere && version == RinexVersion::k3_05)
+  if (navigation.gps_ionosphere && version == RinexVersion::kThree)
     for (const auto& [name, values] :
          {std::pair("GPSA", navigation.gps_ionosphere->alpha), std::pair("GPSB", navigation.gps_ionosphere->beta)})
       text += header_line(fmt::format("{} {:12.4E}{:12.4E}{:12.4E}{:12.4E}", name, values[0], values[1], values[2], values[3]),

@@ -23,9 +23,8 @@ namespace {
 using carrier::kSpeedOfLight;
 using record::Satellite;
 using record::SatelliteSystem;
-using record::Signal;
 
-std::vector<Signal> signals_of(SatelliteSystem system) {
+std::vector<record::Signal> signals_of(SatelliteSystem system) {
   switch (system) {
     case SatelliteSystem::kGps:
       return {{'1', 'C'}, {'2', 'W'}, {'5', 'Q'}};
@@ -101,8 +100,8 @@ class Receiver {
   };
   [[nodiscard]] std::optional<Way> way(Satellite satellite, double t, const Eigen::Vector3d& r_e, double wet) const;
   [[nodiscard]] bool hidden(double t, const carrier::Direction& direction) const;
-  record::Observation observe(Satellite satellite, Signal signal, double frequency, double t, double tag, const Way& now,
-                              double rate, std::vector<CycleSlip>& slips);
+  record::Observation observe(Satellite satellite, record::Signal signal, double frequency, double t, double tag,
+                              const Way& now, double rate, std::vector<CycleSlip>& slips);
   GaussMarkov& process(std::map<std::pair<Satellite, char>, GaussMarkov>& all, Satellite satellite, char band,
                        std::uint64_t stream) {
     const auto found = all.find({satellite, band});
@@ -162,7 +161,7 @@ bool Receiver::hidden(double t, const carrier::Direction& direction) const {
   });
 }
 
-record::Observation Receiver::observe(Satellite satellite, Signal signal, double frequency, double t, double tag,
+record::Observation Receiver::observe(Satellite satellite, record::Signal signal, double frequency, double t, double tag,
                                       const Way& now, double rate, std::vector<CycleSlip>& slips) {
   constexpr double kMillimetre = 1e-3, kThousandth = 1e-3;
   constexpr double kLost = 1.5;  // epochs
@@ -215,7 +214,7 @@ record::ObservationEpoch Receiver::observe(double t, double tag, const Eigen::Ve
     const std::optional<Way> ago = way(satellite, t - kStep, r_e - kStep * v_e, wet);
     const double rate = soon && ago ? (soon->metres - ago->metres) / (2.0 * kStep) : 0.0;
     const auto channel = channels.find(satellite.number);
-    for (const Signal signal : signals_of(satellite.system)) {
+    for (const record::Signal signal : signals_of(satellite.system)) {
       const double frequency =
           *carrier::carrier_frequency(satellite.system, signal.band, channel == channels.end() ? 0 : channel->second);
       epoch.observations.push_back(observe(satellite, signal, frequency, t, tag, *now, rate, slips));

@@ -138,5 +138,63 @@ TEST_F(PreciseOrbitsOf, ThreeSystemsIn2020) {
   expect(SatelliteSystem::kGalileo, 1500, 1.0, 3.0);
 }
 
+/// A circular orbit in inertial axes, tabulated in ECEF.
+Eigen::Vector3d circle(double t) {
+  constexpr double kRate = 1.4585e-4, kEarth = 7.2921151467e-5;
+  const Eigen::Vector3d inertial =
+      26560e3 * Eigen::Vector3d(std::cos(kRate * t), 0.57 * std::sin(kRate * t), 0.8216 * std::sin(kRate * t));
+  return Eigen::AngleAxisd(-kEarth * t, Eigen::Vector3d::UnitZ()) * inertial;
+}
+
+TEST(PreciseEphemerides, InterpolateACircleAndItsClock) {
+  const Satellite satellite{SatelliteSystem::kGps, 1};
+  const geo::GpsTime t0 = geo::GpsTime::from_week(1590, 345600.0);
+  record::PreciseOrbits orbits;
+  record::PreciseClocks clocks;
+  for (int i = 0; i <= 24; ++i)
+    if (i != 18) orbits.points[satellite].push_back({t0 + 900.0 * i, circle(900.0 * i), 1e-4});
+  for (int i = 0; i <= 600; ++i) clocks.points[satellite].push_back({t0 + 30.0 * i, 1e-4 + 2e-12 * 30.0 * i});
+  const PreciseEphemerides precise(orbits, clocks);
+  // The error of a polynomial of degree 9 over 15 min: (omega h)^10 max|prod| / 10! r, below a millimetre in the middle.
+  for (const double t : {4500.0, 5000.0, 8111.0, 10000.0}) {
+    const auto state = precise.at(satellite, t0 + t);
+    ASSERT_TRUE(state) << t;
+    EXPECT_LT((state->r_e - circle(t)).norm(), 2e-3) << t;
+    EXPECT_LT((state->v_e - (circle(t + 0.5) - circle(t - 0.5))).norm(), 1e-4) << t;
+    const double relativity = -2.0 * state->r_e.dot(state->v_e) / (299792458.0 * 299792458.0);
+    EXPECT_NEAR(state->clock_s, 1e-4 + 2e-12 * t + relativity, 1e-15) << t;
+    EXPECT_NEAR(state->clock_rate, 2e-12, 1e-16) << t;
+  }
+  EXPECT_FALSE(precise.at(satellite, t0 - 1.0));
+  EXPECT_FALSE(precise.at(satellite, t0 + 21601.0));
+  EXPECT_FALSE(precise.at(satellite, t0 + 16000.0));  // a point is missing
+  EXPECT_FALSE(precise.at({SatelliteSystem::kGps, 2}, t0 + 5000.0));
+}
+
+TEST(PreciseEphemerides, AgreeWithTheBroadcastOnes) {
+  if (!test::data_dir()) GTEST_SKIP() << "COAST_DATA is not set: the recordings are not at hand";
+  const auto folder = *test::data_dir() / "orbits-2010-182";
+  const PreciseEphemerides precise(io::read_sp3({folder / "igs15904.sp3.gz", folder / "igs15905.sp3.gz"}),
+                                   io::read_clocks({folder / "igs15904.clk.gz"}));
+  const BroadcastOrbits broadcast(io::read_navigation(folder / "brdc1820.10n.gz"));
+  const geo::GpsTime t0 = geo::GpsTime::from_calendar({2010, 7, 1, 3, 7, 12.5});
+  std::vector<double> apart, clocks;
+  for (std::uint8_t number = 1; number <= 32; ++number)
+    for (int i = 0; i < 20; ++i) {
+      const Satellite satellite{SatelliteSystem::kGps, number};
+      const auto a = precise.at(satellite, t0 + 3000.0 * i), b = broadcast.at(satellite, t0 + 3000.0 * i);
+      if (!a || !b) continue;
+      apart.push_back((a->r_e - b->r_e).norm());
+      clocks.push_back(std::abs(a->clock_s - b->clock_s) * 299792458.0);
+      EXPECT_LT((a->v_e - b->v_e).norm(), 5e-3);
+    }
+  ASSERT_GT(apart.size(), 400U);
+  std::ranges::sort(apart);
+  std::ranges::sort(clocks);
+  // Broadcast errors of 2010, with the phase centre's offset (1 to 3 m); clocks besides in another time scale.
+  EXPECT_LT(apart[apart.size() / 2], 2.5);
+  EXPECT_LT(clocks[clocks.size() / 2], 5.0);
+}
+
 }  // namespace
 }  // namespace coast::carrier

@@ -87,6 +87,26 @@ void check(const record::PreciseOrbits& orbits) {
   }
 }
 
+void check(const record::PreciseClocks& clocks) {
+  require(!clocks.points.empty(), "at least one clock");
+  for (const auto& [satellite, points] : clocks.points) {
+    require_increasing(points);
+    for (const auto& point : points) require(std::isfinite(point.clock_s), "clocks are finite");
+  }
+}
+
+void check(const record::AntennaTable& table) {
+  require(!table.antennas.empty(), "at least one antenna");
+  for (const auto& antenna : table.antennas)
+    for (const auto& [band, centre] : antenna.bands) {
+      require(centre.offset.allFinite() && centre.step > 0.0 && !centre.variations.empty(), "phase centres are whole");
+      for (const auto& row : centre.variations) {
+        require(row.size() == centre.variations.front().size() && !row.empty(), "tables are rectangles");
+        for (const double value : row) require(std::isfinite(value), "variations are finite");
+      }
+    }
+}
+
 /// The bytes as a file.
 const std::filesystem::path& as_file(std::string_view bytes) {
   static const test::TemporaryDirectory folder;
@@ -171,6 +191,14 @@ void sp3(std::string_view bytes) {
   read_and_check([&] { return io::read_sp3({as_file(bytes)}); });
 }
 
+void rinex_clock(std::string_view bytes) {
+  read_and_check([&] { return io::read_clocks({as_file(bytes)}); });
+}
+
+void antex(std::string_view bytes) {
+  read_and_check([&] { return io::read_antex(as_file(bytes)); });
+}
+
 void yaml(std::string_view bytes) {
   try {
     const config::Node root = io::parse_yaml(std::string(bytes), "run.yaml");
@@ -196,6 +224,8 @@ const std::vector<Entry>& entries() {
       {"rinex_observation", rinex_observation},
       {"rinex_navigation", rinex_navigation},
       {"sp3", sp3},
+      {"rinex_clock", rinex_clock},
+      {"antex", antex},
       {"yaml", yaml},
   };
   return table;

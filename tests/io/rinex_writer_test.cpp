@@ -131,9 +131,9 @@ TEST_P(RinexWriter, EphemeridesReadBack) {
   EXPECT_EQ(read.tabulated[0].channel, glonass.channel);
 }
 
-INSTANTIATE_TEST_SUITE_P(Versions, RinexWriter, testing::Values(RinexVersion::k3_05, RinexVersion::k4_01),
+INSTANTIATE_TEST_SUITE_P(Versions, RinexWriter, testing::Values(RinexVersion::kThree, RinexVersion::kFour),
                          [](const testing::TestParamInfo<RinexVersion>& version) {
-                           return version.param == RinexVersion::k3_05 ? "v3" : "v4";
+                           return version.param == RinexVersion::kThree ? "v3" : "v4";
                          });
 
 TEST(NavigationFiles, OfSeveralSystemsBecomeOne) {

@@ -5,6 +5,7 @@
 #include <map>
 #include <set>
 
+#include "coast/carrier/antennas.hpp"
 #include "coast/carrier/single_point.hpp"
 
 namespace coast::carrier {
@@ -60,6 +61,8 @@ struct DifferenceOptions {
   AirModel air;
   double elevation_mask = 0.17453292519943295;  ///< rad, at the rover's and the base's
   double longest_base_gap_s = 90.0;             ///< over which the base is interpolated
+  /// Calibrations of the antennas; absent: their phase centres are taken for the points that positions mean.
+  std::optional<record::AntennaCalibration> rover_antenna, base_antenna;
 };
 
 /// Every epoch of the rover. Arcs end at loss of lock, at a change of the half-cycle flag, behind gaps, and where the

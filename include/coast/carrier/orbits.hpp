@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "coast/record/navigation.hpp"
+#include "coast/record/precise_orbits.hpp"
 
 namespace coast::carrier {
 
@@ -52,6 +53,22 @@ class BroadcastOrbits : public Orbits {
   std::map<record::Satellite, std::vector<record::KeplerEphemeris>> kepler_;
   std::map<record::Satellite, std::vector<record::TabulatedEphemeris>> tabulated_;
   record::Events events_;
+};
+
+/// Orbits and clocks of the analysis centres: positions by a polynomial through ten points of the table (Schenewerk 2003),
+/// clocks linearly between those of the clock files or, without, of the orbit files; relativity's periodic part is added
+/// (IS-GPS-200 20.3.3.3.3.1). Positions are of the centre of mass: phase centres lie up to 3 m closer to the Earth, which
+/// differences over baselines do not feel.
+class PreciseEphemerides : public Orbits {
+ public:
+  /// @param clocks  may be empty
+  PreciseEphemerides(record::PreciseOrbits orbits, record::PreciseClocks clocks);
+  /// None before the first and behind the last point, beside gaps, and without a clock.
+  [[nodiscard]] std::optional<SatelliteState> at(record::Satellite satellite, geo::GpsTime t) const override;
+
+ private:
+  record::PreciseOrbits orbits_;
+  record::PreciseClocks clocks_;
 };
 
 }  // namespace coast::carrier

@@ -1,9 +1,10 @@
 #pragma once
-// Products of the analysis centres: precise orbits.
+// Products of the analysis centres: precise orbits, clocks, phase centres of antennas.
 
 #include <filesystem>
 #include <vector>
 
+#include "coast/record/antenna.hpp"
 #include "coast/record/precise_orbits.hpp"
 
 namespace coast::io {
@@ -13,5 +14,13 @@ namespace coast::io {
 /// the same satellite and time the first stays. Velocities are not read.
 /// @throws InputError  no SP3 file, no epoch in it, a time that cannot be read; with line
 [[nodiscard]] record::PreciseOrbits read_sp3(const std::vector<std::filesystem::path>& files);
+
+/// RINEX clocks 2.0 to 3.04 (Ray & Gurtner 2017), of satellites; receivers' are skipped. Several files become one table.
+/// @throws InputError  no clock file, no satellite in it; with line
+[[nodiscard]] record::PreciseClocks read_clocks(const std::vector<std::filesystem::path>& files);
+
+/// ANTEX 1.3 and 1.4 (Rothacher & Schmid 2010). Antennas that cannot be read are left out and counted.
+/// @throws InputError  no ANTEX file, relative calibrations, nothing in it that can be used; with line
+[[nodiscard]] record::AntennaTable read_antex(const std::filesystem::path& file);
 
 }  // namespace coast::io

@@ -27,16 +27,16 @@ namespace coast::io {
 /// @throws InputError  as above, of any of them
 [[nodiscard]] record::NavigationRecording read_navigation(const std::vector<std::filesystem::path>& files);
 
-/// Versions of RINEX that are written.
-enum class RinexVersion { k3_05, k4_01 };
+/// Versions of RINEX that are written: 3.05 and 4.01.
+enum class RinexVersion { kThree, kFour };
 
 /// Observations in GPS time; a signal's code, phase, Doppler and C/N0 where any of its observations has them. What was
 /// repaired when the recording was read stays repaired.
 /// @throws OutputError
 void write_observations(const std::filesystem::path& file, const record::ObservationRecording& recording,
-                        RinexVersion version = RinexVersion::k3_05);
+                        RinexVersion version = RinexVersion::kThree);
 /// @throws OutputError
 void write_navigation(const std::filesystem::path& file, const record::NavigationRecording& navigation,
-                      RinexVersion version = RinexVersion::k3_05);
+                      RinexVersion version = RinexVersion::kThree);
 
 }  // namespace coast::io

@@ -20,6 +20,18 @@ struct OrbitPoint {
   std::optional<double> clock_s;                  ///< without the periodic part of relativity
 };
 
+/// A satellite's clock at one instant.
+struct ClockPoint {
+  geo::GpsTime t;
+  double clock_s = 0.0;  ///< without the periodic part of relativity
+};
+
+struct PreciseClocks {
+  std::string source;
+  std::map<Satellite, std::vector<ClockPoint>> points;  ///< strictly increasing in time
+  Events events;
+};
+
 struct PreciseOrbits {
   std::string source;
   std::map<Satellite, std::vector<OrbitPoint>> points;  ///< strictly increasing in time

@@ -234,7 +234,6 @@ void NavigationReader::keep(const Message& m) {
 }
 
 void NavigationReader::keep_kepler(const Message& m) {
-  constexpr double kGpsMinusBeidou = 14.0;  // s
   const auto& v = m.values;
   const bool beidou = m.satellite.system == SatelliteSystem::kBeidou;
   KeplerEphemeris e;
