@@ -233,13 +233,13 @@ std::string message(const record::TabulatedEphemeris& e, RinexVersion version) {
 
 void write_observations(const std::filesystem::path& file, const record::ObservationRecording& recording,
                         RinexVersion version) {
-  constexpr std::size_t kBlock = 1 << 16;
+  constexpr std::size_t kPiece = 1 << 16;
   const Columns columns(recording);
   AtomicFile out(file);
   std::string text = observation_header(recording, columns, version);
   for (const record::ObservationEpoch& epoch : recording.epochs) {
     put_epoch(text, epoch, columns);
-    if (text.size() < kBlock) continue;
+    if (text.size() < kPiece) continue;
     out.write(text);
     text.clear();
   }

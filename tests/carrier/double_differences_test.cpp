@@ -14,19 +14,19 @@ namespace {
 class DoubleDifferencesTest : public testing::Test {
  protected:
   void SetUp() override {
-    const BroadcastOrbits orbits(mission.observed.navigation);
+    const BroadcastOrbits orbits(mission_.observed.navigation);
     DifferenceOptions options;
-    epochs = form_differences(
-        mission.observed.rover, mission.observed.base, orbits,
-        [&](geo::GpsTime) { return std::optional(mission.observed.r_base_e); }, options);
-    state.x.head<3>() = epochs[100].alone->r_e;
-    for (const SatelliteDifference& s : epochs[100].satellites)
+    epochs_ = form_differences(
+        mission_.observed.rover, mission_.observed.base, orbits,
+        [&](geo::GpsTime) { return std::optional(mission_.observed.r_base_e); }, options);
+    state_.x.head<3>() = epochs_[100].alone->r_e;
+    for (const SatelliteDifference& s : epochs_[100].satellites)
       for (const BandDifference& band : s.bands)
-        state.add({Unknown::Kind::kAmbiguity, s.satellite, band.band, band.arc}, 0.0, 1e4);
+        state_.add({Unknown::Kind::kAmbiguity, s.satellite, band.band, band.arc}, 0.0, 1e4);
   }
-  SimulatedBaseline mission{"car_roundabout", 400.0, simulate::ObservationOptions{}};
-  std::vector<DifferenceEpoch> epochs;
-  RelativeState state;
+  SimulatedBaseline mission_{"car_roundabout", 400.0, simulate::ObservationOptions{}};
+  std::vector<DifferenceEpoch> epochs_;
+  RelativeState state_;
 };
 
 /// Groups of rows that share a clock, by the rows' phase and band.
@@ -42,8 +42,8 @@ std::vector<std::vector<Eigen::Index>> groups_of(const DoubleDifferences& dd, co
 }
 
 TEST_F(DoubleDifferencesTest, CarryTheInformationOfThoseWithAReference) {
-  const DifferenceEpoch& epoch = epochs[100];
-  const DoubleDifferences dd = double_differences(epoch, state, {}, {}, {});
+  const DifferenceEpoch& epoch = epochs_[100];
+  const DoubleDifferences dd = double_differences(epoch, state_, {}, {}, {});
   const auto rows = static_cast<Eigen::Index>(dd.rows.size());
   ASSERT_GT(rows, 40);
   // Textbook: unscaled rows, first of each group as the reference, correlated noise.
@@ -71,8 +71,8 @@ TEST_F(DoubleDifferencesTest, CarryTheInformationOfThoseWithAReference) {
 }
 
 TEST_F(DoubleDifferencesTest, AreBlindToClocksAndWhite) {
-  const DifferenceEpoch& epoch = epochs[100];
-  const DoubleDifferences dd = double_differences(epoch, state, {}, {}, {});
+  const DifferenceEpoch& epoch = epochs_[100];
+  const DoubleDifferences dd = double_differences(epoch, state_, {}, {}, {});
   EXPECT_LT((dd.B * dd.B.transpose() - Eigen::MatrixXd::Identity(dd.B.rows(), dd.B.rows())).norm(), 1e-12);
   for (const auto& group : groups_of(dd, epoch)) {
     Eigen::VectorXd clock = Eigen::VectorXd::Zero(dd.B.cols());
@@ -82,11 +82,11 @@ TEST_F(DoubleDifferencesTest, AreBlindToClocksAndWhite) {
 }
 
 TEST_F(DoubleDifferencesTest, DesignIsTheDerivative) {
-  const DifferenceEpoch& epoch = epochs[100];
-  const DoubleDifferences at = double_differences(epoch, state, {}, {}, {});
+  const DifferenceEpoch& epoch = epochs_[100];
+  const DoubleDifferences at = double_differences(epoch, state_, {}, {}, {});
   constexpr double kStep = 1.0;  // m; second derivatives of ranges are 5e-8 /m
   for (Eigen::Index k = 0; k < 3; ++k) {
-    RelativeState moved = state;
+    RelativeState moved = state_;
     moved.x(k) += kStep;
     const DoubleDifferences there = double_differences(epoch, moved, {}, {}, {});
     // In metres: the sds change with the elevation.

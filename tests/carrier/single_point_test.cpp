@@ -24,15 +24,15 @@ std::vector<CodeMeasurement> codes_of(const SimulatedBaseline& mission, std::siz
 
 class SinglePointTest : public testing::Test {
  protected:
-  SimulatedBaseline mission{"car_roundabout", 400.0, error_free()};
-  std::size_t epoch = 200;
-  geo::GpsTime t = mission.observed.rover.epochs[epoch].t;
+  SimulatedBaseline mission_{"car_roundabout", 400.0, error_free()};
+  std::size_t epoch_ = 200;
+  geo::GpsTime t_ = mission_.observed.rover.epochs[epoch_].t;
 };
 
 TEST_F(SinglePointTest, MeetsTheTruthWithoutErrors) {
-  const auto point = single_point(codes_of(mission, epoch), t, Eigen::Vector3d::Zero(), {}, 0.1);
+  const auto point = single_point(codes_of(mission_, epoch_), t_, Eigen::Vector3d::Zero(), {}, 0.1);
   ASSERT_TRUE(point);
-  const simulate::Kinematics truth = mission.truth(t - point->clock_s);
+  const simulate::Kinematics truth = mission_.truth(t_ - point->clock_s);
   // Codes are rounded to a millimetre, times to a nanosecond; geometry takes it a few times.
   EXPECT_LT((point->r_e - truth.r_eb_e).norm(), 3e-3);
   EXPECT_LT(std::abs(point->clock_s), 6e-4);
@@ -45,19 +45,19 @@ TEST_F(SinglePointTest, MeetsTheTruthWithoutErrors) {
 }
 
 TEST_F(SinglePointTest, LeavesOutTheCodeThatContradictsTheOthers) {
-  std::vector<CodeMeasurement> codes = codes_of(mission, epoch);
+  std::vector<CodeMeasurement> codes = codes_of(mission_, epoch_);
   codes[3].code += 150.0;
-  const auto point = single_point(codes, t, Eigen::Vector3d::Zero(), {}, 0.1);
+  const auto point = single_point(codes, t_, Eigen::Vector3d::Zero(), {}, 0.1);
   ASSERT_TRUE(point);
   EXPECT_EQ(point->left_out, std::vector{codes[3].satellite});
-  EXPECT_LT((point->r_e - mission.truth(t - point->clock_s).r_eb_e).norm(), 5e-3);
+  EXPECT_LT((point->r_e - mission_.truth(t_ - point->clock_s).r_eb_e).norm(), 5e-3);
 }
 
 TEST_F(SinglePointTest, SaysNothingWithTooFewSatellites) {
-  std::vector<CodeMeasurement> codes = codes_of(mission, epoch);
+  std::vector<CodeMeasurement> codes = codes_of(mission_, epoch_);
   codes.resize(3);
-  EXPECT_FALSE(single_point(codes, t, Eigen::Vector3d::Zero(), {}, 0.1));
-  EXPECT_FALSE(single_point({}, t, Eigen::Vector3d::Zero(), {}, 0.1));
+  EXPECT_FALSE(single_point(codes, t_, Eigen::Vector3d::Zero(), {}, 0.1));
+  EXPECT_FALSE(single_point({}, t_, Eigen::Vector3d::Zero(), {}, 0.1));
 }
 
 }  // namespace
