@@ -14,6 +14,7 @@
 #include "coast/io/gnss.hpp"
 #include "coast/io/imu.hpp"
 #include "coast/io/reference.hpp"
+#include "coast/io/rinex.hpp"
 #include "coast/io/writers.hpp"
 
 namespace {
@@ -22,6 +23,7 @@ using namespace coast;  // NOLINT(google-build-using-namespace): one program, no
 
 constexpr int kSamples = 500'000;
 constexpr int kRate = 200;
+constexpr int kEpochs = 5'000;  // of RINEX
 const geo::GpsTime kStart = geo::GpsTime::from_week(2300, 1000.0);
 
 /// Files of one random recording, made once, removed at the end.
@@ -67,11 +69,28 @@ class Files {
     const auto nav = io::make_nav_writer(folder_ / "a.nav");
     for (const auto& epoch : epochs_) nav->write(epoch);
     nav->close();
+    io::write_observations(folder_ / "a.obs", observations(generator));
     std::ifstream text(folder_ / "imu.csv", std::ios::binary);
     const std::string bytes{std::istreambuf_iterator<char>(text), std::istreambuf_iterator<char>()};
     gzFile zipped = gzopen((folder_ / "imu.csv.gz").c_str(), "wb");
     gzwrite(zipped, bytes.data(), static_cast<unsigned>(bytes.size()));
     gzclose(zipped);
+  }
+
+  /// Twenty satellites on three bands, code, phase, Doppler and C/N0.
+  static record::ObservationRecording observations(std::mt19937& generator) {
+    std::uniform_real_distribution<double> range(2.0e7, 2.6e7);
+    record::ObservationRecording recording;
+    for (int i = 0; i < kEpochs; ++i) {
+      record::ObservationEpoch& epoch = recording.epochs.emplace_back();
+      epoch.t = kStart + static_cast<double>(i);
+      for (std::uint8_t number = 1; number <= 20; ++number)
+        for (const char band : {'1', '2', '5'}) {
+          const double code = range(generator);
+          epoch.observations.push_back({{record::SatelliteSystem::kGps, number}, {band, 'C'}, code, 5.0 * code, -1234.5, 45.5});
+        }
+    }
+    return recording;
   }
 
   std::filesystem::path folder_;
@@ -123,6 +142,12 @@ void read_nav(benchmark::State& state) {
   count_bytes(state, options.file, kSamples);
 }
 
+void read_rinex(benchmark::State& state) {
+  const auto path = Files::get().path("a.obs");
+  for (auto _ : state) benchmark::DoNotOptimize(io::read_observations(path).epochs.size());
+  count_bytes(state, path, kEpochs);
+}
+
 void write_trajectory(benchmark::State& state, const char* format) {
   const auto stem = Files::get().path("written");
   for (auto _ : state) {
@@ -140,6 +165,7 @@ BENCHMARK_CAPTURE(read_imu_csv, text, "imu.csv")->Unit(benchmark::kMillisecond);
 BENCHMARK_CAPTURE(read_imu_csv, gzip, "imu.csv.gz")->Unit(benchmark::kMillisecond);
 BENCHMARK(read_pos)->Unit(benchmark::kMillisecond);
 BENCHMARK(read_nav)->Unit(benchmark::kMillisecond);
+BENCHMARK(read_rinex)->Unit(benchmark::kMillisecond);
 BENCHMARK_CAPTURE(write_trajectory, nav, "nav")->Unit(benchmark::kMillisecond);
 BENCHMARK_CAPTURE(write_trajectory, csv, "csv")->Unit(benchmark::kMillisecond);
 BENCHMARK_CAPTURE(write_trajectory, sbet, "sbet")->Unit(benchmark::kMillisecond);
