@@ -17,7 +17,6 @@ using record::Satellite;
 struct BaseSatellite {
   Satellite satellite;
   double elevation = 0.0;
-  double wet_mapping = 1.0;
   std::vector<TrackedBand> bands;  ///< code and phase less the model
 };
 
@@ -38,8 +37,7 @@ std::vector<BaseEpoch> residuals_of(const std::vector<TrackedEpoch>& base, const
     for (const TrackedSatellite& s : tracked.satellites) {
       const SignalPath path = path_to(s.state, *r_e, receiver, tracked.t, options.air.troposphere);
       if (path.direction.elevation < options.elevation_mask) continue;
-      BaseSatellite& of =
-          epoch.satellites.emplace_back(BaseSatellite{s.satellite, path.direction.elevation, path.wet_mapping, s.bands});
+      BaseSatellite& of = epoch.satellites.emplace_back(BaseSatellite{s.satellite, path.direction.elevation, s.bands});
       const double modelled = path.modelled(s.state);
       for (TrackedBand& band : of.bands) {
         double expected = modelled;
@@ -177,8 +175,7 @@ std::vector<DifferenceEpoch> form_differences(const record::ObservationRecording
     for (const TrackedSatellite& s : tracked.satellites) {
       const BaseSatellite at_base = BaseInterpolation::satellite_at(pair, s.satellite);
       std::vector<BandDifference> bands = bands_of(s, at_base);
-      if (!bands.empty())
-        epoch.satellites.push_back({s.satellite, s.state, at_base.elevation, at_base.wet_mapping, std::move(bands)});
+      if (!bands.empty()) epoch.satellites.push_back({s.satellite, s.state, at_base.elevation, std::move(bands)});
     }
   }
   break_arcs(epochs);

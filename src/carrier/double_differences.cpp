@@ -57,6 +57,8 @@ std::vector<Candidate> candidates(const DifferenceEpoch& epoch, const RelativeSt
       for (const bool phase : {true, false}) {
         const std::optional<double>& observed = phase ? band.phase : band.code;
         if (!observed || left_out.contains({s, b, phase})) continue;
+        const Unknown ambiguity{Kind::kAmbiguity, satellite.satellite, band.band, band.arc};
+        if (phase && state.index(ambiguity) < 0) continue;  // no code has told where to begin
         const double sd = nominal_phase_sd(path.direction.elevation, satellite.base_elevation, band);
         const double scale = phase ? weighting.noise.phase : code_scale(satellite, band, weighting);
         all.push_back({{phase, satellite.satellite.system, band.band},
@@ -85,10 +87,7 @@ void fill(const Candidate& c, const DifferenceEpoch& epoch, const RelativeState&
   add({Kind::kZenithDelay, {}, '0', 0}, c.path.wet_mapping);
   const double squared = kL1Frequency / band.frequency * kL1Frequency / band.frequency;
   add({Kind::kIonosphere, satellite.satellite, '0', 0}, c.row.phase ? -squared : squared);
-  if (c.row.phase)
-    add({Kind::kAmbiguity, satellite.satellite, band.band, band.arc}, band.wavelength());
-  else
-    add({Kind::kMultipath, satellite.satellite, band.band, 0}, 1.0);
+  if (c.row.phase) add({Kind::kAmbiguity, satellite.satellite, band.band, band.arc}, band.wavelength());
   dd.residual(i) = weight * residual;
 }
 

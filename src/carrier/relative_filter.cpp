@@ -21,13 +21,18 @@ Unknown ambiguity_of(const SatelliteDifference& satellite, const BandDifference&
   return {Kind::kAmbiguity, satellite.satellite, band.band, band.arc};
 }
 
-/// Whitened double differences with their predicted covariance.
-struct Innovation {
-  Eigen::MatrixXd H;
-  Eigen::VectorXd v;
-  Eigen::MatrixXd PHt;
-  Eigen::LLT<Eigen::MatrixXd> S;
-};
+double unknown_variance(const BandDifference& band) {
+  return kUnknownAmbiguity / band.wavelength() * kUnknownAmbiguity / band.wavelength();
+}
+
+/// Phase less code, cycles; less the code of another band where its own is missing.
+std::optional<double> from_code(const SatelliteDifference& satellite, const BandDifference& band) {
+  std::optional<double> code = band.code;
+  for (const BandDifference& other : satellite.bands)
+    if (!code) code = other.code;
+  if (!code) return std::nullopt;
+  return (*band.phase - *code) / band.wavelength();
+}
 
 Innovation innovation_of(const DoubleDifferences& dd, const RelativeState& state) {
   Innovation in;
@@ -84,7 +89,10 @@ FloatEpoch RelativeFilter::step(const DifferenceEpoch& epoch) {
   }
   forget_unseen(epoch);
   predict_ambiguities(epoch, dt);
-  predict_air(epoch, dt);
+  const AirStates air = options_.air.value_or(AirStates{});
+  const Eigen::Vector3d baseline_e = state_.x.head<3>() - epoch.r_base_e;
+  if (air.zenith_delay) predict_zenith_delay(baseline_e, epoch.r_base_e.normalized(), dt);
+  if (air.ionosphere) predict_ionosphere(epoch, baseline_e.norm(), dt);
   last_ = epoch.t;
   started_ = true;
   update(epoch, result);
@@ -93,14 +101,17 @@ FloatEpoch RelativeFilter::step(const DifferenceEpoch& epoch) {
 
 bool RelativeFilter::predict_position(const DifferenceEpoch& epoch, double dt) {
   constexpr double kFastest = 50.0;  // m/s, where nothing else tells how far the rover is by now
+  constexpr double kRoom = 3.0;      // times the sd of a badly placed single point
   const bool keeps = started_ && options_.motion == RoverMotion::kStatic;
   if (keeps) return true;
   if (!started_ && !epoch.alone) return false;
   double sd = kUnknownPosition;
-  if (epoch.alone)
+  if (epoch.alone) {
     state_.x.head<3>() = epoch.alone->r_e;
-  else
+    sd = std::max(sd, kRoom * std::sqrt(epoch.alone->covariance_e.trace()));
+  } else {
     sd += kFastest * dt;
+  }
   for (Eigen::Index i = 0; i < 3; ++i) state_.reset(i, state_.x(i), sd * sd);
   return true;
 }
@@ -115,28 +126,25 @@ void RelativeFilter::forget_unseen(const DifferenceEpoch& epoch) {
   });
 }
 
-/// Differences between receivers grow with the distance: a few mm a km in quiet times, and change within half an hour.
-void RelativeFilter::predict_air(const DifferenceEpoch& epoch, double dt) {
-  constexpr double kIonospherePerMetre = 1e-6;  // vertical; more towards the horizon
-  constexpr double kIonosphereTime = 1800.0;    // s
-  constexpr double kZenithDelay = 0.001;        // m
-  constexpr double kZenithPerMetre = 4e-7;      // of baseline: a centimetre in 25 km
-  constexpr double kZenithPerHeight = 3e-4;     // m/m: what a standard atmosphere may be off
-  constexpr double kZenithWalk = 3e-5;          // m/sqrt(s)
-  const AirStates air = options_.air.value_or(AirStates{});
-  const Eigen::Vector3d baseline_e = state_.x.head<3>() - epoch.r_base_e;
-  if (air.zenith_delay) {
-    const Unknown unknown{Kind::kZenithDelay, {}, '0', 0};
-    const double height = std::abs(baseline_e.dot(epoch.r_base_e.normalized()));
-    const double sd = kZenithDelay + kZenithPerMetre * baseline_e.norm() + kZenithPerHeight * height;
-    const Eigen::Index i = state_.index(unknown);
-    if (i < 0)
-      state_.add(unknown, 0.0, sd * sd);
-    else
-      state_.P(i, i) += kZenithWalk * kZenithWalk * dt;
-  }
-  if (!air.ionosphere) return;
-  const double phi = std::exp(-dt / kIonosphereTime);
+void RelativeFilter::predict_zenith_delay(const Eigen::Vector3d& baseline_e, const Eigen::Vector3d& up_e, double dt) {
+  constexpr double kLeast = 0.001;     // m
+  constexpr double kPerMetre = 4e-7;   // of baseline: a centimetre in 25 km
+  constexpr double kPerHeight = 3e-4;  // m/m: what a standard atmosphere may be off
+  constexpr double kWalk = 3e-5;       // m/sqrt(s)
+  const Unknown unknown{Kind::kZenithDelay, {}, '0', 0};
+  const double sd = kLeast + kPerMetre * baseline_e.norm() + kPerHeight * std::abs(baseline_e.dot(up_e));
+  const Eigen::Index i = state_.index(unknown);
+  if (i < 0)
+    state_.add(unknown, 0.0, sd * sd);
+  else
+    state_.P(i, i) += kWalk * kWalk * dt;
+}
+
+/// Differences between receivers grow with the distance, a millimetre a km in quiet times, and change within half an hour.
+void RelativeFilter::predict_ionosphere(const DifferenceEpoch& epoch, double baseline, double dt) {
+  constexpr double kPerMetre = 1e-6;  // vertical; more towards the horizon
+  constexpr double kTime = 1800.0;    // s
+  const double phi = std::exp(-dt / kTime);
   for (Eigen::Index i = 3; i < state_.size(); ++i) {
     const Unknown& unknown = state_.unknowns()[static_cast<std::size_t>(i)];
     if (unknown.kind != Kind::kIonosphere) continue;
@@ -149,7 +157,7 @@ void RelativeFilter::predict_air(const DifferenceEpoch& epoch, double dt) {
     const Unknown unknown{Kind::kIonosphere, satellite.satellite, '0', 0};
     seen_[unknown] = epoch.t;
     const double slant = 1.0 / std::sqrt(std::max(1.0 - std::pow(0.95 * std::cos(satellite.base_elevation), 2.0), 0.05));
-    const double sd = kIonospherePerMetre * baseline_e.norm() * slant;
+    const double sd = kPerMetre * baseline * slant;
     ionosphere_[unknown] = sd * sd;
     if (state_.index(unknown) < 0) state_.add(unknown, 0.0, sd * sd);
   }
@@ -165,10 +173,15 @@ void RelativeFilter::predict_ambiguities(const DifferenceEpoch& epoch, double dt
       const Unknown unknown = ambiguity_of(satellite, band);
       seen_[unknown] = epoch.t;
       if (state_.index(unknown) >= 0) continue;
-      const double variance = kUnknownAmbiguity / band.wavelength() * kUnknownAmbiguity / band.wavelength();
-      const double value = band.code ? (*band.phase - *band.code) / band.wavelength() : 0.0;
-      state_.add(unknown, value, variance);
+      if (const std::optional<double> value = from_code(satellite, band)) state_.add(unknown, *value, unknown_variance(band));
     }
+}
+
+void RelativeFilter::start_anew(const SatelliteDifference& satellite, const BandDifference& band) {
+  const Unknown unknown = ambiguity_of(satellite, band);
+  const Eigen::Index i = state_.index(unknown);
+  weighting_.known.erase(unknown);
+  state_.reset(i, from_code(satellite, band).value_or(state_.x(i)), unknown_variance(band));
 }
 
 void RelativeFilter::update(const DifferenceEpoch& epoch, FloatEpoch& result) {
@@ -183,30 +196,33 @@ void RelativeFilter::update(const DifferenceEpoch& epoch, FloatEpoch& result) {
       return;
     }
     const Innovation in = innovation_of(result.dd, state_);
-    if (const std::optional<std::size_t> worst = outlier(result.dd, in)) {
-      const Row& row = result.dd.rows[*worst];
-      result.left_out.push_back(left_out(epoch, row, result.dd.residual(static_cast<Eigen::Index>(*worst))));
-      out.insert({row.satellite, row.band, row.phase});
-      if (row.phase) {
-        const BandDifference& band = epoch.satellites[row.satellite].bands[row.band];
-        const Unknown unknown = ambiguity_of(epoch.satellites[row.satellite], band);
-        const Eigen::Index i = state_.index(unknown);
-        weighting_.known.erase(unknown);
-        const double variance = kUnknownAmbiguity / band.wavelength() * kUnknownAmbiguity / band.wavelength();
-        state_.reset(i, band.code ? (*band.phase - *band.code) / band.wavelength() : state_.x(i), variance);
-      }
-      continue;
+    if (in.S.info() != Eigen::Success || !in.v.allFinite()) {  // nothing of the state can be trusted
+      state_ = RelativeState();
+      started_ = false;
+      result.shortfall = Shortfall::kContradiction;
+      return;
     }
-    const Eigen::MatrixXd W = in.S.matrixL().solve(in.PHt.transpose());
-    result.step = W.transpose() * in.S.matrixL().solve(in.v);
-    state_.x += result.step;
-    state_.P -= W.transpose() * W;
-    result.updated = true;
-    for (const Row& row : result.dd.rows)
-      if (!row.phase)
-        weighting_.known.insert(ambiguity_of(epoch.satellites[row.satellite], epoch.satellites[row.satellite].bands[row.band]));
-    return;
+    const std::optional<std::size_t> worst = outlier(result.dd, in);
+    if (!worst) {
+      apply(in, epoch, result);
+      return;
+    }
+    const Row& row = result.dd.rows[*worst];
+    result.left_out.push_back(left_out(epoch, row, result.dd.residual(static_cast<Eigen::Index>(*worst))));
+    out.insert({row.satellite, row.band, row.phase});
+    if (row.phase) start_anew(epoch.satellites[row.satellite], epoch.satellites[row.satellite].bands[row.band]);
   }
+}
+
+void RelativeFilter::apply(const Innovation& in, const DifferenceEpoch& epoch, FloatEpoch& result) {
+  const Eigen::MatrixXd W = in.S.matrixL().solve(in.PHt.transpose());
+  result.step = W.transpose() * in.S.matrixL().solve(in.v);
+  state_.x += result.step;
+  state_.P -= W.transpose() * W;
+  result.updated = true;
+  for (const Row& row : result.dd.rows)
+    if (!row.phase)
+      weighting_.known.insert(ambiguity_of(epoch.satellites[row.satellite], epoch.satellites[row.satellite].bands[row.band]));
 }
 
 }  // namespace coast::carrier

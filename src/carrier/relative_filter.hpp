@@ -1,6 +1,8 @@
 #pragma once
 // The float solution: an extended Kalman filter over a baseline's double differences. Private to the room.
 
+#include <Eigen/Cholesky>
+
 #include "coast/carrier/ppk.hpp"
 #include "double_differences.hpp"
 
@@ -13,6 +15,14 @@ struct FloatEpoch {
   Eigen::VectorXd step;  ///< of the state, by the update
   std::vector<SignalResidual> left_out;
   Shortfall shortfall = Shortfall::kNone;
+};
+
+/// Whitened double differences with their predicted covariance.
+struct Innovation {
+  Eigen::MatrixXd H;
+  Eigen::VectorXd v;
+  Eigen::MatrixXd PHt;
+  Eigen::LLT<Eigen::MatrixXd> S;
 };
 
 class RelativeFilter {
@@ -28,9 +38,12 @@ class RelativeFilter {
   bool predict_position(const DifferenceEpoch& epoch, double dt);
   void forget_unseen(const DifferenceEpoch& epoch);
   void predict_ambiguities(const DifferenceEpoch& epoch, double dt);
-  void predict_air(const DifferenceEpoch& epoch, double dt);
+  void predict_zenith_delay(const Eigen::Vector3d& baseline_e, const Eigen::Vector3d& up_e, double dt);
+  void predict_ionosphere(const DifferenceEpoch& epoch, double baseline, double dt);
+  void start_anew(const SatelliteDifference& satellite, const BandDifference& band);
   /// Finds what contradicts the rest, leaves codes out, forgets ambiguities of phases; then updates.
   void update(const DifferenceEpoch& epoch, FloatEpoch& result);
+  void apply(const Innovation& in, const DifferenceEpoch& epoch, FloatEpoch& result);
 
   const PpkOptions& options_;
   Weighting weighting_;

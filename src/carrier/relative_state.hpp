@@ -10,7 +10,7 @@
 namespace coast::carrier {
 
 struct Unknown {
-  enum class Kind : std::uint8_t { kPosition, kZenithDelay, kIonosphere, kMultipath, kAmbiguity };
+  enum class Kind : std::uint8_t { kPosition, kZenithDelay, kIonosphere, kAmbiguity };
   Kind kind = Kind::kPosition;
   record::Satellite satellite;
   char band = '0';

@@ -29,7 +29,6 @@ struct SatelliteDifference {
   record::Satellite satellite;
   SatelliteState state;  ///< at transmission to the rover
   double base_elevation = 0.0;
-  double base_wet_mapping = 1.0;
   std::vector<BandDifference> bands;  ///< by band
 };
 

@@ -15,9 +15,9 @@ enum class RoverMotion { kKinematic, kStatic };
 /// When ambiguities are taken as integers.
 struct FixingOptions {
   bool wanted = true;
-  double ratio = 3.0;              ///< least second-best over best
-  double success_rate = 0.99;      ///< least, of the integers that are fixed
-  double elevation_mask = 0.1745;  ///< rad: below, a satellite's ambiguities stay float
+  double ratio = 3.0;           ///< least second-best over best
+  double success_rate = 0.99;   ///< least, of the integers that are fixed
+  double elevation_mask = 0.0;  ///< rad: below, a satellite's ambiguities stay float
 };
 
 /// How much noisier than the nominal sigmas phases and codes are. Nominal is a geodetic receiver in the open: 2 mm (1 +
@@ -109,8 +109,8 @@ struct PpkSolution {
 [[nodiscard]] record::GnssRecording to_fixes(const PpkSolution& solution, const std::string& source);
 
 /// Positions of a rover. In a combined solution an epoch has the integers of either pass where the passes agree, floats are
-/// weighted by their information; what differs beyond its sigmas is not averaged: the epoch is float, its covariance spans
-/// both.
+/// weighted by their information. What differs beyond its sigmas is not averaged: the covariance spans both, and a decimetre
+/// apart the epoch is float.
 /// @param progress  told the share done, 0 to 1
 /// @throws InputError  no common signals, no common time, no orbits
 [[nodiscard]] PpkSolution solve_ppk(const record::ObservationRecording& rover, const record::ObservationRecording& base,
