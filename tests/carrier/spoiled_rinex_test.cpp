@@ -1,6 +1,7 @@
 // RINEX files spoiled in many ways, through the readers and the solver: refused with the file's name, or repaired and counted,
 // and what comes out is still right. No crash, no hang, nothing that is not finite.
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <fstream>
@@ -82,8 +83,8 @@ void add_headers(std::vector<SpoiledFile>& all) {
 }
 
 void add_epochs(std::vector<SpoiledFile>& all) {
-  const auto epoch = [&](std::string what, std::size_t at, std::string text, bool refused = false) {
-    all.push_back({std::move(what), "rover.obs",
+  const auto epoch = [&](const std::string& what, std::size_t at, const std::string& text, bool refused = false) {
+    all.push_back({what, "rover.obs",
                    [at, text](const std::string& whole) {
                      return with_line(whole, ">", 20, [&](const std::string& line) { return put(line, at, text); });
                    },
@@ -119,7 +120,7 @@ void add_epochs(std::vector<SpoiledFile>& all) {
 }
 
 void add_observations(std::vector<SpoiledFile>& all) {
-  const auto value = [&](std::string what, std::size_t at, std::string text) {
+  const auto value = [&](const std::string& what, std::size_t at, const std::string& text) {
     for (const char* file : {"rover.obs", "base.obs"})
       all.push_back({what, file, [at, text](const std::string& whole) {
                        return with_line(whole, "G", 100, [&](const std::string& line) { return put(line, at, text); });
@@ -152,8 +153,8 @@ void add_observations(std::vector<SpoiledFile>& all) {
 }
 
 void add_ephemerides(std::vector<SpoiledFile>& all) {
-  const auto number = [&](std::string what, int line, std::size_t at, std::string text) {
-    all.push_back({std::move(what), "brdc.nav", [line, at, text](const std::string& whole) {
+  const auto number = [&](const std::string& what, int line, std::size_t at, const std::string& text) {
+    all.push_back({what, "brdc.nav", [line, at, text](const std::string& whole) {
                      std::string spoiled = whole;  // of every satellite of GPS: nothing is left to hide behind
                      for (std::size_t g = spoiled.find("\nG"); g != std::string::npos; g = spoiled.find("\nG", g + 1)) {
                        std::size_t begin = g + 1;
