@@ -148,21 +148,20 @@ double BandDifference::wavelength() const {
 }
 
 std::vector<DifferenceEpoch> form_differences(const record::ObservationRecording& rover,
-                                              const record::ObservationRecording& base, const Orbits& orbits,
-                                              const BasePosition& base_position, const DifferenceOptions& options) {
-  std::map<std::pair<record::SatelliteSystem, char>, char> rover_signals, base_signals;
-  for (const auto& [band, pair] : choose_signals(rover, base, options.systems)) {
-    rover_signals[band] = pair.rover;
-    base_signals[band] = pair.base;
-  }
+                                              const record::ObservationRecording& base, const SignalChoice& signals,
+                                              const Orbits& orbits, const BasePosition& base_position,
+                                              const DifferenceOptions& options) {
   const geo::GpsTime first = rover.epochs.front().t, last = rover.epochs.back().t;
   const double room = options.longest_base_gap_s + 1.0;
-  const BaseInterpolation bases(
-      residuals_of(track(base, orbits, base_signals, first - room, last + room), base_position, options),
-      options.longest_base_gap_s);
+  Tracking of_rover{options.systems, {}, first, last}, of_base{options.systems, {}, first - room, last + room};
+  for (const auto& [band, pair] : signals) {
+    of_rover.signals[band] = pair.rover;
+    of_base.signals[band] = pair.base;
+  }
+  const BaseInterpolation bases(residuals_of(track(base, orbits, of_base), base_position, options), options.longest_base_gap_s);
   std::vector<DifferenceEpoch> epochs;
   Eigen::Vector3d start_e = rover.approximate_r_e.value_or(Eigen::Vector3d::Zero());
-  for (const TrackedEpoch& tracked : track(rover, orbits, rover_signals, first, last)) {
+  for (const TrackedEpoch& tracked : track(rover, orbits, of_rover)) {
     DifferenceEpoch& epoch = epochs.emplace_back();
     epoch.t = tracked.t;
     epoch.seen = static_cast<int>(tracked.codes.size());
@@ -172,6 +171,7 @@ std::vector<DifferenceEpoch> form_differences(const record::ObservationRecording
     if (pair.first == nullptr) continue;
     epoch.age_s = pair.age;
     epoch.r_base_e = pair.first->r_e;
+    if (pair.second != nullptr) epoch.r_base_e += pair.w * (pair.second->r_e - pair.first->r_e);
     for (const TrackedSatellite& s : tracked.satellites) {
       const BaseSatellite at_base = BaseInterpolation::satellite_at(pair, s.satellite);
       std::vector<BandDifference> bands = bands_of(s, at_base);

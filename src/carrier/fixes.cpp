@@ -1,3 +1,5 @@
+#include <fmt/format.h>
+
 #include <Eigen/Eigenvalues>
 
 #include "coast/carrier/ppk.hpp"
@@ -20,10 +22,13 @@ Eigen::Matrix3d in_n(const Eigen::Matrix3d& covariance_e, const Eigen::Matrix3d&
 record::GnssRecording to_fixes(const PpkSolution& solution, const std::string& source) {
   record::GnssRecording recording;
   recording.source = source;
-  recording.events = solution.events;
+  long crossed = 0;
   for (const PpkEpoch& epoch : solution.epochs) {
     if (epoch.quality == record::FixQuality::kUnknown) continue;
-    if (!recording.fixes.empty() && epoch.t <= recording.fixes.back().t) continue;  // clock errors may cross
+    if (!recording.fixes.empty() && epoch.t <= recording.fixes.back().t) {
+      ++crossed;
+      continue;
+    }
     const Eigen::Matrix3d C_n_e = geo::C_n_e(geo::geodetic_from_ecef(epoch.r_e));
     record::GnssFix& fix = recording.fixes.emplace_back();
     fix.t = epoch.t;
@@ -35,6 +40,11 @@ record::GnssRecording to_fixes(const PpkSolution& solution, const std::string& s
     fix.age_s = epoch.age_s;
     fix.ratio = epoch.ratio;
   }
+  if (crossed > 0)
+    recording.events.push_back({record::Event::Severity::kWarning, "epoch_order",
+                                fmt::format("{}: {} epoch{} that the receiver's clock puts before the one before left out",
+                                            source, crossed, crossed == 1 ? "" : "s"),
+                                std::nullopt, crossed});
   return recording;
 }
 

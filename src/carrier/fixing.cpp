@@ -202,9 +202,7 @@ FixedSolution AmbiguityFixing::fix(const DifferenceEpoch& epoch, const FloatEpoc
   without_ = satellites_of(all);
   std::erase_if(without_, [&](Satellite s) { return std::ranges::find(solution.satellites, s) != solution.satellites.end(); });
   solution.ambiguities = static_cast<int>(best->a.size());
-  constexpr double kCentimetres = 0.1;  // m, sd in space
   solution.fixed = true;
-  if (!(solution.position_covariance_e.trace() < kCentimetres * kCentimetres)) solution.shortfall = Shortfall::kBadGeometry;
   return solution;
 }
 

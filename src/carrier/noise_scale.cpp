@@ -69,6 +69,7 @@ double inflation(const std::vector<PpkEpoch>& epochs) {
       }
     }
   double sum = 1.0;
+  if (!(squares > 0.0)) return sum;
   for (std::size_t lag = 1; lag <= kLags && pairs[lag] > 0.0; ++lag) {
     const double rho = products[lag] / pairs[lag] * count / squares;
     if (rho < kLost) break;

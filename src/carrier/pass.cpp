@@ -10,10 +10,6 @@ namespace coast::carrier {
 
 namespace {
 
-double interval_of(const std::vector<DifferenceEpoch>& epochs) {
-  return epochs.size() < 2 ? 0.0 : (epochs.back().t - epochs.front().t) / static_cast<double>(epochs.size() - 1);
-}
-
 /// The single-point solution, as far as there is one.
 PpkEpoch alone(const DifferenceEpoch& epoch) {
   PpkEpoch solved;
@@ -52,40 +48,53 @@ Eigen::Vector4d way_n(const Direction& direction) {
   return {c * std::cos(direction.azimuth), c * std::sin(direction.azimuth), -std::sin(direction.elevation), 1.0};
 }
 
-/// Sd of the position over that of ranges to these satellites.
-double pdop(const FloatEpoch& updated) {
-  std::map<std::size_t, Eigen::Vector4d> ways;
-  for (const Row& row : updated.dd.rows) {
-    ways[row.satellite] = way_n(row.direction);
-  }
-  if (ways.size() < 4) return 0.0;
+/// Satellites of the double differences, and where they stand.
+std::map<std::size_t, Direction> directions(const FloatEpoch& updated) {
+  std::map<std::size_t, Direction> all;
+  for (const Row& row : updated.dd.rows) all.emplace(row.satellite, row.direction);
+  return all;
+}
+
+/// Covariance, N, E, D, of a position by one range to each satellite with these sds; none where they are placed too badly.
+template <class Sd>
+std::optional<Eigen::Matrix3d> covariance_n(const std::map<std::size_t, Direction>& satellites, const Sd& sd) {
+  constexpr std::size_t kUnknowns = 4;
+  if (satellites.size() < kUnknowns) return std::nullopt;
   Eigen::Matrix4d N = Eigen::Matrix4d::Zero();
-  for (const auto& [satellite, way] : ways) N += way * way.transpose();
-  const double squared = N.inverse().topLeftCorner<3, 3>().trace();
-  return squared > 0.0 ? std::sqrt(squared) : 0.0;
+  for (const auto& [satellite, direction] : satellites) {
+    const Eigen::Vector4d way = way_n(direction) / sd(direction);
+    N += way * way.transpose();
+  }
+  const Eigen::Matrix3d covariance = N.inverse().topLeftCorner<3, 3>();
+  if (!covariance.allFinite() || !(covariance.diagonal().array() > 0.0).all()) return std::nullopt;
+  return covariance;
+}
+
+/// Sd of the position over that of ranges to these satellites; 0 where it cannot be told.
+double pdop_of(const std::map<std::size_t, Direction>& satellites) {
+  const auto covariance = covariance_n(satellites, [](const Direction&) { return 1.0; });
+  return covariance ? std::sqrt(covariance->trace()) : 0.0;
 }
 
 /// What the air does differently at both ends moves the position and is alike in all bands, so that no residual shows it. Where
 /// it is not estimated: as one range of each satellite, 0.7 mm a kilometre off at the zenith, would move it.
-Eigen::Matrix3d air_covariance(const FloatEpoch& updated, const RelativeState& state, const DifferenceEpoch& epoch,
-                               const PpkOptions& options) {
+Eigen::Matrix3d air_covariance(const std::map<std::size_t, Direction>& satellites, const Eigen::Vector3d& r_e,
+                               const DifferenceEpoch& epoch, const PpkOptions& options) {
   constexpr double kPerMetre = 7e-7;
   if (!options.differences.air.troposphere || (options.air && options.air->ionosphere)) return Eigen::Matrix3d::Zero();
-  const double zenith = kPerMetre * (state.x.head<3>() - epoch.r_base_e).norm();
-  std::map<std::size_t, Eigen::Vector4d> ways;  // with the clock
-  std::map<std::size_t, double> variances;
-  for (const Row& row : updated.dd.rows) {
-    if (ways.contains(row.satellite)) continue;
-    const double slant = zenith / std::max(std::sin(row.direction.elevation), 0.1);
-    variances[row.satellite] = slant * slant;
-    ways[row.satellite] = way_n(row.direction);
-  }
-  Eigen::Matrix4d N = Eigen::Matrix4d::Zero();
-  for (const auto& [satellite, way] : ways) N += way * way.transpose() / variances.at(satellite);
-  const Eigen::Matrix3d covariance_n = N.inverse().topLeftCorner<3, 3>();
-  if (!covariance_n.allFinite()) return Eigen::Matrix3d::Zero();
-  const Eigen::Matrix3d C_n_e = geo::C_n_e(geo::geodetic_from_ecef(state.x.head<3>()));
-  return C_n_e * covariance_n * C_n_e.transpose();
+  const double zenith = kPerMetre * (r_e - epoch.r_base_e).norm();
+  const auto covariance =
+      covariance_n(satellites, [&](const Direction& d) { return zenith / std::max(std::sin(d.elevation), 0.1); });
+  if (!covariance) return Eigen::Matrix3d::Zero();
+  const Eigen::Matrix3d C_n_e = geo::C_n_e(geo::geodetic_from_ecef(r_e));
+  return C_n_e * *covariance * C_n_e.transpose();
+}
+
+/// Integers are no fix where errors that the noise does not count become decimetres.
+bool badly_placed(double pdop, const Eigen::Matrix3d& covariance_e) {
+  constexpr double kMostPdop = 10.0;
+  constexpr double kMostSd = 0.1;  // m, in space
+  return pdop > kMostPdop || !(covariance_e.trace() < kMostSd * kMostSd);
 }
 
 PpkEpoch solve(const DifferenceEpoch& epoch, const PpkOptions& options, RelativeFilter& filter, AmbiguityFixing& fixing) {
@@ -101,28 +110,26 @@ PpkEpoch solve(const DifferenceEpoch& epoch, const PpkOptions& options, Relative
   solved.ratio = fixed.ratio;
   solved.success_rate = fixed.success_rate;
   solved.fixed_ambiguities = fixed.ambiguities;
-  std::set<std::size_t> satellites;
-  for (const Row& row : updated.dd.rows) satellites.insert(row.satellite);
+  const std::map<std::size_t, Direction> satellites = directions(updated);
   solved.satellites = static_cast<int>(satellites.size());
-  solved.pdop = pdop(updated);
+  solved.pdop = pdop_of(satellites);
   const Eigen::VectorXd& x = fixed.fixed ? fixed.x : state.x;
-  constexpr double kMostPdop = 10.0;  // beyond it errors that the noise does not count are decimetres
-  if (fixed.fixed && solved.pdop > kMostPdop) solved.shortfall = Shortfall::kBadGeometry;
-  const bool precise = fixed.fixed && solved.shortfall == Shortfall::kNone;
-  solved.quality = precise ? record::FixQuality::kFixed : record::FixQuality::kFloat;
   solved.r_e = x.head<3>();
   solved.covariance_e = fixed.fixed ? fixed.position_covariance_e : state.P.topLeftCorner<3, 3>().eval();
-  solved.covariance_e += air_covariance(updated, state, epoch, options);
+  if (fixed.fixed && badly_placed(solved.pdop, solved.covariance_e)) solved.shortfall = Shortfall::kBadGeometry;
+  const bool precise = fixed.fixed && solved.shortfall == Shortfall::kNone;
+  solved.quality = precise ? record::FixQuality::kFixed : record::FixQuality::kFloat;
+  solved.covariance_e += air_covariance(satellites, state.x.head<3>(), epoch, options);
   add_residuals(epoch, updated, x - (state.x - updated.step), fixed, solved);
   return solved;
 }
 
 }  // namespace
 
-std::vector<PpkEpoch> solve_pass(const std::vector<DifferenceEpoch>& epochs, const PpkOptions& options, bool backward,
-                                 const std::function<void(double)>& progress) {
+std::vector<PpkEpoch> solve_pass(const std::vector<DifferenceEpoch>& epochs, const PpkOptions& options, double interval,
+                                 bool backward, const std::function<void(double)>& progress) {
   std::vector<PpkEpoch> solved(epochs.size());
-  RelativeFilter filter(options, interval_of(epochs));
+  RelativeFilter filter(options, interval);
   AmbiguityFixing fixing(options.fixing);
   for (std::size_t k = 0; k < epochs.size(); ++k) {
     const std::size_t i = backward ? epochs.size() - 1 - k : k;

@@ -6,9 +6,9 @@
 namespace coast::carrier {
 
 /// In order of time or against it; the result is in order of time.
-/// @param options  with `air` and `noise` settled
-std::vector<PpkEpoch> solve_pass(const std::vector<DifferenceEpoch>& epochs, const PpkOptions& options, bool backward,
-                                 const std::function<void(double)>& progress);
+/// @param options  with `air` and `noise` settled  @param interval  of the rover, s
+std::vector<PpkEpoch> solve_pass(const std::vector<DifferenceEpoch>& epochs, const PpkOptions& options, double interval,
+                                 bool backward, const std::function<void(double)>& progress);
 
 /// What the residuals of a pass say of the noise: phases by those with integers, which leave three unknowns and the clocks;
 /// codes by theirs against these positions, and by how long they are alike.

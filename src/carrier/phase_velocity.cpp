@@ -65,8 +65,16 @@ std::vector<Step> steps_between(const ObservedPhases& before, const ObservedPhas
   return steps;
 }
 
-/// Least squares with a clock per group, which is its weighted mean. @return false with too few satellites
-bool solve(const std::vector<Step>& steps, Eigen::Vector3d& x, Eigen::Matrix3d& covariance, double& worst, std::size_t& which) {
+/// What the steps say of the displacement, and the one that contradicts it most.
+struct Adjusted {
+  Eigen::Vector3d x = Eigen::Vector3d::Zero();
+  Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();
+  double worst = 0.0;  ///< sd
+  std::size_t which = 0;
+};
+
+/// Least squares with a clock per group, which is its weighted mean; none with too few satellites.
+std::optional<Adjusted> adjust(const std::vector<Step>& steps) {
   struct Mean {
     double weight = 0.0, residual = 0.0;
     Eigen::Vector3d way_e = Eigen::Vector3d::Zero();
@@ -78,7 +86,7 @@ bool solve(const std::vector<Step>& steps, Eigen::Vector3d& x, Eigen::Matrix3d& 
     mean.residual += s.weight * s.residual;
     mean.way_e += s.weight * s.way_e;
   }
-  if (steps.size() < means.size() + 4) return false;
+  if (steps.size() < means.size() + 4) return std::nullopt;
   Eigen::Matrix3d N = Eigen::Matrix3d::Zero();
   Eigen::Vector3d b = Eigen::Vector3d::Zero();
   for (const Step& s : steps) {
@@ -87,19 +95,20 @@ bool solve(const std::vector<Step>& steps, Eigen::Vector3d& x, Eigen::Matrix3d& 
     N += s.weight * way_e * way_e.transpose();
     b -= s.weight * way_e * (s.residual - mean.residual / mean.weight);
   }
-  covariance = N.inverse();
-  if (!covariance.allFinite()) return false;
-  x = covariance * b;
-  worst = 0.0;
+  Adjusted adjusted;
+  adjusted.covariance = N.inverse();
+  if (!adjusted.covariance.allFinite()) return std::nullopt;
+  adjusted.x = adjusted.covariance * b;
   for (std::size_t i = 0; i < steps.size(); ++i) {
     const Mean& mean = means.at(steps[i].group);
-    const double left = steps[i].residual - mean.residual / mean.weight + (steps[i].way_e - mean.way_e / mean.weight).dot(x);
+    const double left =
+        steps[i].residual - mean.residual / mean.weight + (steps[i].way_e - mean.way_e / mean.weight).dot(adjusted.x);
     const double size = std::abs(left) * std::sqrt(steps[i].weight);
-    if (size <= worst) continue;
-    worst = size;
-    which = i;
+    if (size <= adjusted.worst) continue;
+    adjusted.worst = size;
+    adjusted.which = i;
   }
-  return true;
+  return adjusted;
 }
 
 std::optional<Displacement> displacement(const DifferenceEpoch& before, const PpkEpoch& from, const DifferenceEpoch& now,
@@ -108,17 +117,10 @@ std::optional<Displacement> displacement(const DifferenceEpoch& before, const Pp
   constexpr double kLongest = 2.5;     // s
   if (from.quality == FixQuality::kUnknown || to.quality == FixQuality::kUnknown || to.t - from.t > kLongest) return {};
   std::vector<Step> steps = steps_between(observed(before, from.r_e, noise, options), observed(now, to.r_e, noise, options));
-  Displacement result;
-  result.dt = to.t - from.t;
-  Eigen::Vector3d x;
-  double worst = 0.0;
-  std::size_t which = 0;
-  while (solve(steps, x, result.covariance_e, worst, which)) {
-    if (worst < kSuspicious) {
-      result.d_e = to.r_e - from.r_e + x;
-      return result;
-    }
-    steps.erase(steps.begin() + static_cast<std::ptrdiff_t>(which));
+  while (const std::optional<Adjusted> adjusted = adjust(steps)) {
+    if (adjusted->worst < kSuspicious)
+      return Displacement{to.r_e - from.r_e + adjusted->x, adjusted->covariance, to.t - from.t};
+    steps.erase(steps.begin() + static_cast<std::ptrdiff_t>(adjusted->which));
   }
   return {};
 }

@@ -29,6 +29,14 @@ class Stages {
   int done_ = 0;
 };
 
+/// The value that one in twenty exceeds: single points have outliers.
+double upper_end(std::vector<double> values) {
+  if (values.empty()) return 0.0;
+  const auto at = values.begin() + static_cast<std::ptrdiff_t>(values.size() * 19 / 20);
+  std::ranges::nth_element(values, at);
+  return *at;
+}
+
 /// What the baseline calls for.
 AirStates air_states(const std::vector<DifferenceEpoch>& epochs) {
   constexpr double kFar = 10e3;     // m
@@ -40,9 +48,8 @@ AirStates air_states(const std::vector<DifferenceEpoch>& epochs) {
     lengths.push_back(baseline_e.norm());
     heights.push_back(std::abs(baseline_e.dot(epoch.r_base_e.normalized())));
   }
-  if (lengths.empty()) return {};
-  const double length = *std::ranges::max_element(lengths), height = *std::ranges::max_element(heights);
-  return {length > kFar, length > kFar || height > kAbove};
+  const bool far = upper_end(lengths) > kFar;
+  return {far, far || upper_end(heights) > kAbove};
 }
 
 void check(const record::ObservationRecording& rover, const record::ObservationRecording& base, const PpkSolution& solution,
@@ -95,8 +102,10 @@ PpkSolution solve_ppk(const record::ObservationRecording& rover, const record::O
                       const BasePosition& base_position, const PpkOptions& options,
                       const std::function<void(double)>& progress) {
   PpkSolution solution;
+  solution.interval_s = interval_of(rover);
   solution.signals = choose_signals(rover, base, options.differences.systems);
-  const std::vector<DifferenceEpoch> epochs = form_differences(rover, base, orbits, base_position, options.differences);
+  const std::vector<DifferenceEpoch> epochs =
+      form_differences(rover, base, solution.signals, orbits, base_position, options.differences);
   check(rover, base, solution, epochs);
   PpkOptions settled = options;
   if (!options.air) settled.air = air_states(epochs);
@@ -106,12 +115,13 @@ PpkSolution solve_ppk(const record::ObservationRecording& rover, const record::O
   if (!options.noise) {
     constexpr NoiseScale kLenient{1.5, 2.0, 1.0};  // so that noise is not taken for outliers before it is known
     settled.noise = kLenient;
-    settled.noise = estimate_noise(solve_pass(epochs, settled, backward, stages.next()), *settled.noise);
+    settled.noise = estimate_noise(solve_pass(epochs, settled, solution.interval_s, backward, stages.next()), *settled.noise);
   }
   solution.noise = *settled.noise;
   solution.air = *settled.air;
-  solution.epochs = solve_pass(epochs, settled, backward, stages.next());
-  if (combined) solution.epochs = combine(solution.epochs, solve_pass(epochs, settled, true, stages.next()));
+  solution.epochs = solve_pass(epochs, settled, solution.interval_s, backward, stages.next());
+  if (combined)
+    solution.epochs = combine(solution.epochs, solve_pass(epochs, settled, solution.interval_s, true, stages.next()));
   add_phase_velocities(epochs, solution.noise, options.differences, solution.epochs);
   return solution;
 }

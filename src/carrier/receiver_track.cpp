@@ -1,6 +1,7 @@
 #include "receiver_track.hpp"
 
 #include <algorithm>
+#include <span>
 
 #include "coast/carrier/signals.hpp"
 
@@ -17,10 +18,13 @@ class ArcCounter {
  public:
   explicit ArcCounter(double longest_gap) : longest_gap_(longest_gap) {}
 
+  /// To be told of every observation of a band: a loss of lock also counts where the phase itself is missing.
   int arc_of(const Observation& o, geo::GpsTime t) {
     Arc& arc = arcs_[{o.satellite, o.signal.band}];
-    const bool broken = o.lost_lock || o.half_cycle != arc.half_cycle || t - arc.last > longest_gap_;
-    if (broken) ++arc.number;
+    arc.lost = arc.lost || o.lost_lock;
+    if (!o.phase_cycles) return arc.number;
+    if (arc.lost || o.half_cycle != arc.half_cycle || t - arc.last > longest_gap_) ++arc.number;
+    arc.lost = false;
     arc.half_cycle = o.half_cycle;
     arc.last = t;
     return arc.number;
@@ -30,18 +34,21 @@ class ArcCounter {
   struct Arc {
     geo::GpsTime last;
     bool half_cycle = false;
+    bool lost = false;
     int number = 0;
   };
   double longest_gap_;
   std::map<std::pair<Satellite, char>, Arc> arcs_;
 };
 
+/// The observations of one satellite at one epoch.
+using OfSatellite = std::span<const Observation>;
+
 /// The code that single-point positions use: of the lowest band, the first there is.
-const Observation* code_of(const std::vector<Observation>& observations, std::size_t begin, std::size_t end) {
+const Observation* code_of(OfSatellite observations) {
   const Observation* first = nullptr;
-  for (std::size_t i = begin; i < end; ++i)
-    if (observations[i].code_m && (first == nullptr || observations[i].signal.band < first->signal.band))
-      first = &observations[i];
+  for (const Observation& o : observations)
+    if (o.code_m && (first == nullptr || o.signal.band < first->signal.band)) first = &o;
   return first;
 }
 
@@ -67,58 +74,75 @@ double longest_gap(double interval) {
   return std::max(kAlways, 1.5 * interval);
 }
 
-std::vector<TrackedEpoch> track(const record::ObservationRecording& receiver, const Orbits& orbits,
-                                const std::map<std::pair<SatelliteSystem, char>, char>& signals, geo::GpsTime from,
-                                geo::GpsTime to) {
+namespace {
+
+std::vector<TrackedBand> bands_of(OfSatellite observations, geo::GpsTime t, int channel, const Tracking& wanted,
+                                  ArcCounter& arcs) {
+  std::vector<TrackedBand> bands;
+  for (const Observation& o : observations) {
+    const auto signal = wanted.signals.find({o.satellite.system, o.signal.band});
+    const auto f = carrier_frequency(o.satellite.system, o.signal.band, channel);
+    if (signal == wanted.signals.end() || signal->second != o.signal.tracking || !f) continue;
+    TrackedBand& band = bands.emplace_back();
+    band.band = o.signal.band;
+    band.frequency = *f;
+    band.code = o.code_m;
+    if (o.phase_cycles) band.phase = *o.phase_cycles * kSpeedOfLight / *f;
+    band.cn0 = o.cn0_dbhz.value_or(0.0);
+    band.half_cycle = o.half_cycle;
+    band.arc = arcs.arc_of(o, t);
+  }
+  return bands;
+}
+
+std::optional<CodeMeasurement> measurement_of(const Observation& code, const SatelliteState& state, int channel) {
+  const auto f = carrier_frequency(code.satellite.system, code.signal.band, channel);
+  if (!f) return std::nullopt;
+  const double factor = kL1Frequency / *f;
+  CodeMeasurement measurement{code.satellite, state, *code.code_m, factor * factor, std::nullopt};
+  if (code.doppler_hz) measurement.range_rate = -*code.doppler_hz * kSpeedOfLight / *f;
+  return measurement;
+}
+
+void track_satellite(const record::ObservationRecording& receiver, OfSatellite observations, const Orbits& orbits,
+                     const Tracking& wanted, ArcCounter& arcs, TrackedEpoch& epoch) {
+  const Satellite satellite = observations.front().satellite;
+  const int channel = channel_of(receiver, satellite);
+  std::vector<TrackedBand> bands = bands_of(observations, epoch.t, channel, wanted, arcs);
+  const Observation* code = code_of(observations);
+  if (code == nullptr) return;
+  const std::optional<SatelliteState> state = at_transmission(orbits, satellite, epoch.t, *code->code_m);
+  if (!state) return;
+  if (const auto measurement = measurement_of(*code, *state, channel)) epoch.codes.push_back(*measurement);
+  if (!bands.empty()) epoch.satellites.push_back({satellite, *state, std::move(bands)});
+}
+
+}  // namespace
+
+std::vector<TrackedEpoch> track(const record::ObservationRecording& receiver, const Orbits& orbits, const Tracking& wanted) {
   std::vector<TrackedEpoch> epochs;
-  epochs.reserve(receiver.epochs.size());
   ArcCounter arcs(longest_gap(interval_of(receiver)));
   for (const record::ObservationEpoch& epoch : receiver.epochs) {
-    if (epoch.t < from || epoch.t > to) continue;
+    if (epoch.t < wanted.from || epoch.t > wanted.to) continue;
     TrackedEpoch& tracked = epochs.emplace_back();
     tracked.t = epoch.t;
-    const std::vector<Observation>& all = epoch.observations;
+    const OfSatellite all(epoch.observations);
     for (std::size_t begin = 0, end = 0; begin < all.size(); begin = end) {
       while (end < all.size() && all[end].satellite == all[begin].satellite) ++end;
-      const Satellite satellite = all[begin].satellite;
-      const Observation* code = code_of(all, begin, end);
-      if (code == nullptr) continue;
-      const std::optional<SatelliteState> state = at_transmission(orbits, satellite, epoch.t, *code->code_m);
-      if (!state) continue;
-      const int channel = channel_of(receiver, satellite);
-      if (const auto f = carrier_frequency(satellite.system, code->signal.band, channel)) {
-        const double factor = kL1Frequency / *f;
-        tracked.codes.push_back({satellite, *state, *code->code_m, factor * factor, std::nullopt});
-        if (code->doppler_hz) tracked.codes.back().range_rate = -*code->doppler_hz * kSpeedOfLight / *f;
-      }
-      TrackedSatellite of{satellite, *state, {}};
-      for (std::size_t i = begin; i < end; ++i) {
-        const auto wanted = signals.find({satellite.system, all[i].signal.band});
-        if (wanted == signals.end() || wanted->second != all[i].signal.tracking) continue;
-        const auto f = carrier_frequency(satellite.system, all[i].signal.band, channel);
-        if (!f) continue;
-        TrackedBand& band = of.bands.emplace_back();
-        band.band = all[i].signal.band;
-        band.frequency = *f;
-        band.code = all[i].code_m;
-        band.cn0 = all[i].cn0_dbhz.value_or(0.0);
-        band.half_cycle = all[i].half_cycle;
-        if (!all[i].phase_cycles) continue;
-        band.phase = *all[i].phase_cycles * kSpeedOfLight / *f;
-        band.arc = arcs.arc_of(all[i], epoch.t);
-      }
-      if (!of.bands.empty()) tracked.satellites.push_back(std::move(of));
+      if (wanted.systems.contains(all[begin].satellite.system))
+        track_satellite(receiver, all.subspan(begin, end - begin), orbits, wanted, arcs, tracked);
     }
   }
   return epochs;
 }
 
 std::vector<std::optional<SinglePoint>> single_points(const record::ObservationRecording& receiver, const Orbits& orbits,
-                                                      const AirModel& air, double elevation_mask) {
+                                                      const DifferenceOptions& options) {
   std::vector<std::optional<SinglePoint>> points;
   Eigen::Vector3d start_e = receiver.approximate_r_e.value_or(Eigen::Vector3d::Zero());
-  for (const TrackedEpoch& epoch : track(receiver, orbits, {}, receiver.epochs.front().t, receiver.epochs.back().t)) {
-    points.push_back(single_point(epoch.codes, epoch.t, start_e, air, elevation_mask));
+  const Tracking codes{options.systems, {}, receiver.epochs.front().t, receiver.epochs.back().t};
+  for (const TrackedEpoch& epoch : track(receiver, orbits, codes)) {
+    points.push_back(single_point(epoch.codes, epoch.t, start_e, options.air, options.elevation_mask));
     if (points.back()) start_e = points.back()->r_e;
   }
   return points;

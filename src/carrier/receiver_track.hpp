@@ -27,13 +27,14 @@ struct TrackedEpoch {
   std::vector<CodeMeasurement> codes;  ///< one of each satellite, for single-point positions
 };
 
-/// @param signals  tracking wanted of each system and band  @param from, to  what is not needed outside is left out
-std::vector<TrackedEpoch> track(const record::ObservationRecording& receiver, const Orbits& orbits,
-                                const std::map<std::pair<record::SatelliteSystem, char>, char>& signals, geo::GpsTime from,
-                                geo::GpsTime to);
+/// What is tracked, and from when to when; the rest is left out.
+struct Tracking {
+  const std::set<record::SatelliteSystem>& systems;
+  std::map<std::pair<record::SatelliteSystem, char>, char> signals;  ///< of each system and band
+  geo::GpsTime from, to;
+};
+std::vector<TrackedEpoch> track(const record::ObservationRecording& receiver, const Orbits& orbits, const Tracking& wanted);
 
-/// Median step between epochs, s; 0 with fewer than two.
-double interval_of(const record::ObservationRecording& receiver);
 /// Phases missing for longer may have slipped unseen, s.
 double longest_gap(double interval);
 

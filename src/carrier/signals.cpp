@@ -1,99 +1,56 @@
 #include "coast/carrier/signals.hpp"
 
+#include <algorithm>
+#include <array>
+
 namespace coast::carrier {
 
 namespace {
 
-constexpr double kMHz = 1e6;
+using record::SatelliteSystem;
 
-std::optional<double> of_gps(char band) {
-  switch (band) {
-    case '1':
-      return kL1Frequency;
-    case '2':
-      return 1227.60 * kMHz;
-    case '5':
-      return 1176.45 * kMHz;
-    default:
-      return std::nullopt;
-  }
-}
+struct Carrier {
+  SatelliteSystem system;
+  char band;
+  double mhz;
+  double mhz_per_channel = 0.0;
+};
 
-std::optional<double> of_glonass(char band, int channel) {
-  switch (band) {
-    case '1':
-      return (1602.0 + 0.5625 * channel) * kMHz;
-    case '2':
-      return (1246.0 + 0.4375 * channel) * kMHz;
-    case '3':
-      return 1202.025 * kMHz;
-    case '4':
-      return 1600.995 * kMHz;
-    case '6':
-      return 1248.06 * kMHz;
-    default:
-      return std::nullopt;
-  }
-}
-
-std::optional<double> of_galileo(char band) {
-  switch (band) {
-    case '1':
-      return kL1Frequency;
-    case '5':
-      return 1176.45 * kMHz;
-    case '6':
-      return 1278.75 * kMHz;
-    case '7':
-      return 1207.14 * kMHz;
-    case '8':
-      return 1191.795 * kMHz;
-    default:
-      return std::nullopt;
-  }
-}
-
-std::optional<double> of_beidou(char band) {
-  switch (band) {
-    case '1':
-      return kL1Frequency;
-    case '2':
-      return 1561.098 * kMHz;
-    case '5':
-      return 1176.45 * kMHz;
-    case '6':
-      return 1268.52 * kMHz;
-    case '7':
-      return 1207.14 * kMHz;
-    case '8':
-      return 1191.795 * kMHz;
-    default:
-      return std::nullopt;
-  }
-}
+constexpr std::array kCarriers{Carrier{SatelliteSystem::kGps, '1', 1575.42},
+                               Carrier{SatelliteSystem::kGps, '2', 1227.60},
+                               Carrier{SatelliteSystem::kGps, '5', 1176.45},
+                               Carrier{SatelliteSystem::kGlonass, '1', 1602.0, 0.5625},
+                               Carrier{SatelliteSystem::kGlonass, '2', 1246.0, 0.4375},
+                               Carrier{SatelliteSystem::kGlonass, '3', 1202.025},
+                               Carrier{SatelliteSystem::kGlonass, '4', 1600.995},
+                               Carrier{SatelliteSystem::kGlonass, '6', 1248.06},
+                               Carrier{SatelliteSystem::kGalileo, '1', 1575.42},
+                               Carrier{SatelliteSystem::kGalileo, '5', 1176.45},
+                               Carrier{SatelliteSystem::kGalileo, '6', 1278.75},
+                               Carrier{SatelliteSystem::kGalileo, '7', 1207.14},
+                               Carrier{SatelliteSystem::kGalileo, '8', 1191.795},
+                               Carrier{SatelliteSystem::kBeidou, '1', 1575.42},
+                               Carrier{SatelliteSystem::kBeidou, '2', 1561.098},
+                               Carrier{SatelliteSystem::kBeidou, '5', 1176.45},
+                               Carrier{SatelliteSystem::kBeidou, '6', 1268.52},
+                               Carrier{SatelliteSystem::kBeidou, '7', 1207.14},
+                               Carrier{SatelliteSystem::kBeidou, '8', 1191.795},
+                               Carrier{SatelliteSystem::kQzss, '1', 1575.42},
+                               Carrier{SatelliteSystem::kQzss, '2', 1227.60},
+                               Carrier{SatelliteSystem::kQzss, '5', 1176.45},
+                               Carrier{SatelliteSystem::kQzss, '6', 1278.75},
+                               Carrier{SatelliteSystem::kNavic, '5', 1176.45},
+                               Carrier{SatelliteSystem::kNavic, '9', 2492.028},
+                               Carrier{SatelliteSystem::kSbas, '1', 1575.42},
+                               Carrier{SatelliteSystem::kSbas, '5', 1176.45}};
 
 }  // namespace
 
-std::optional<double> carrier_frequency(record::SatelliteSystem system, char band, int glonass_channel) {
-  using record::SatelliteSystem;
-  switch (system) {
-    case SatelliteSystem::kGlonass:
-      return of_glonass(band, glonass_channel);
-    case SatelliteSystem::kGalileo:
-      return of_galileo(band);
-    case SatelliteSystem::kBeidou:
-      return of_beidou(band);
-    case SatelliteSystem::kQzss:
-      return band == '6' ? std::optional(1278.75 * kMHz) : of_gps(band);
-    case SatelliteSystem::kNavic:
-      if (band == '9') return 2492.028 * kMHz;
-      return band == '5' ? of_gps(band) : std::nullopt;
-    case SatelliteSystem::kSbas:
-      return band == '2' ? std::nullopt : of_gps(band);
-    case SatelliteSystem::kGps:
-      break;
-  }
-  return of_gps(band);
+std::optional<double> carrier_frequency(SatelliteSystem system, char band, int glonass_channel) {
+  constexpr double kMHz = 1e6;
+  const auto found = std::ranges::find_if(kCarriers, [&](const Carrier& c) { return c.system == system && c.band == band; });
+  if (found == kCarriers.end()) return std::nullopt;
+  return (found->mhz + found->mhz_per_channel * glonass_channel) * kMHz;
 }
 
 }  // namespace coast::carrier

@@ -31,9 +31,9 @@ void check_leap_seconds(const io::TimeOptions& time, const std::string& source, 
 }
 
 // Positions from the rover's and the base's observations; what was found of them is told like the rest.
-void read_with_ppk(const RunConfig& config, Recordings& recordings) {
-  const PpkResult ppk = run_ppk(*config.ppk, {});
-  recordings.gnss = carrier::to_fixes(ppk.solution, config.ppk->rover.string());
+void read_with_ppk(const RunConfig& config, const std::function<void(double)>& progress, Recordings& recordings) {
+  const PpkResult ppk = run_ppk(*config.ppk, progress);
+  recordings.gnss = ppk.fixes;
   recordings.gnss.events = ppk.events;
   recordings.inspection = ppk_sentences(ppk);
   if (recordings.gnss.fixes.empty())
@@ -44,10 +44,10 @@ void read_with_ppk(const RunConfig& config, Recordings& recordings) {
 
 }  // namespace
 
-Recordings load(const RunConfig& config) {
+Recordings load(const RunConfig& config, const std::function<void(double)>& ppk_progress) {
   Recordings recordings;
   if (config.ppk) {
-    read_with_ppk(config, recordings);
+    read_with_ppk(config, ppk_progress, recordings);
   } else if (config.gnss.time.lacks_week() && !config.imu.time.lacks_week()) {
     recordings.imu = io::read_imu(config.imu);
     recordings.gnss = io::read_gnss(config.gnss, recordings.imu.samples.front().t);

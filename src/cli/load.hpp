@@ -2,6 +2,7 @@
 // The recordings that a run.yaml names.
 
 #include <filesystem>
+#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
@@ -22,7 +23,8 @@ struct Recordings {
 };
 
 /// Reads all files; a week that one of them does not state comes from the other.
-[[nodiscard]] Recordings load(const RunConfig& config);
+/// @param ppk_progress  told how far the positions are where they are solved from RINEX, 0 to 1
+[[nodiscard]] Recordings load(const RunConfig& config, const std::function<void(double)>& ppk_progress = {});
 /// First thing on the terminal: what was understood, and the warnings.
 void print_inspection(const Recordings& recordings, bool quiet);
 /// The setup of run.yaml with what depends on the recordings: a given start in their week, and where the first outage begins.

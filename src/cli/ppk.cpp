@@ -17,7 +17,7 @@ void ppk(const std::filesystem::path& input, const CommonOptions& options) {
   const PpkResult result = run_ppk(config, [&](double share) { line.show("solving", share); });
   line.show("writing", 0.0);
   const report::Page page = ppk_page(config, result);
-  io::write_gnss_pos(out / "ppk.pos", carrier::to_fixes(result.solution, config.rover.string()));
+  io::write_gnss_pos(out / "ppk.pos", result.fixes);
   io::write_text(out / "residuals.csv", residuals_csv(result));
   io::write_text(out / "ppk.json", ppk_json(config, result));
   io::write_text(out / "ppk.resolved.yaml", config.map.resolved_yaml());

@@ -7,6 +7,7 @@
 #include "coast/io/yaml.hpp"
 #include "commands.hpp"
 #include "indented.hpp"
+#include "run_config.hpp"
 
 namespace coast::cli {
 
@@ -31,20 +32,18 @@ std::vector<std::filesystem::path> paths(const Node& node) {
   return all;
 }
 
-BaseAt base_position(const Node& map) {
+carrier::BaseAt base_position(const Node& map) {
+  using carrier::BaseAt;
+  constexpr std::array kHows{BaseAt::How::kHeader, BaseAt::How::kAverage, BaseAt::How::kMoving};
   const auto node = map.find("base_position");
-  if (!node || !node->is_map())
-    return {static_cast<BaseAt::How>(1 + map.choice("base_position", {"header", "average", "moving"}, 0)), {}};
+  if (!node || !node->is_map()) return {kHows[map.choice("base_position", {"header", "average", "moving"}, 0)], {}};
   if (const auto ecef = node->find("ecef_m")) {
     constexpr double kLeast = 6.2e6, kMost = 7e6;  // m from the Earth's centre
     const double radius = ecef->vector3().norm();
     if (!(radius > kLeast && radius < kMost)) throw ecef->error("a point not on the Earth", "x, y, z in m, ECEF");
     return {BaseAt::How::kGiven, ecef->vector3()};
   }
-  const Node geodetic = node->at("geodetic_deg_m");
-  const Eigen::Vector3d v = geodetic.vector3();
-  if (std::abs(v.x()) > 90.0) throw geodetic.error("a latitude beyond 90 deg", "[latitude_deg, longitude_deg, height_m]");
-  return {BaseAt::How::kGiven, geo::ecef_from_geodetic({geo::kDegree * v.x(), geo::kDegree * v.y(), v.z()})};
+  return {BaseAt::How::kGiven, geo::ecef_from_geodetic(geodetic_from(node->at("geodetic_deg_m")))};
 }
 
 std::set<SatelliteSystem> systems(const Node& map, std::set<SatelliteSystem> otherwise) {

@@ -3,20 +3,13 @@
 
 #include <filesystem>
 #include <optional>
-#include <variant>
 #include <vector>
 
+#include "coast/carrier/base_position.hpp"
 #include "coast/carrier/ppk.hpp"
 #include "coast/config/node.hpp"
 
 namespace coast::cli {
-
-/// Where the base stands.
-struct BaseAt {
-  /// kAveraged: the mean of its own single-point positions, metres off; kMoving: these, epoch by epoch.
-  enum class How { kGiven, kHeader, kAveraged, kMoving } how = How::kHeader;
-  Eigen::Vector3d r_e = Eigen::Vector3d::Zero();  ///< marker, ECEF, m, of kGiven
-};
 
 struct PpkConfig {
   config::Node map;
@@ -24,7 +17,7 @@ struct PpkConfig {
   std::vector<std::filesystem::path> navigation;
   std::vector<std::filesystem::path> sp3, clocks;  ///< precise orbits; clocks finer than theirs
   std::optional<std::filesystem::path> antex;      ///< phase centres of both antennas
-  BaseAt base_at;
+  carrier::BaseAt base_at;
   bool broadcast_ionosphere = true;  ///< of single-point positions
   carrier::PpkOptions options;
 

@@ -93,7 +93,7 @@ report::Section input_section(const PpkConfig& config, const PpkResult& result) 
                 cells({"signals", signals_in_words(result.solution.signals)}),
                 cells({"from", geo::to_string(epochs.front().shown)}),
                 cells({"to", geo::to_string(epochs.back().shown)}),
-                cells({"interval", fmt::format("{} s", number(result.interval_s))})};
+                cells({"interval", fmt::format("{} s", number(result.solution.interval_s))})};
   if (!result.events.empty()) section.tables.push_back(event_table(result.events));
   return section;
 }

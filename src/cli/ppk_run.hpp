@@ -10,10 +10,10 @@ namespace coast::cli {
 
 struct PpkResult {
   carrier::PpkSolution solution;
+  record::GnssRecording fixes;                         ///< of it, as the filter takes them
   Eigen::Vector3d r_base_e = Eigen::Vector3d::Zero();  ///< its antenna, ECEF, m; of the first epoch where it moves
   std::string base_from;                               ///< where that comes from, in words
   std::string rover, base;                             ///< receiver and antenna, in words
-  double interval_s = 0.0;                             ///< of the rover
   record::Events events;                               ///< of all files and of the solution
 };
 

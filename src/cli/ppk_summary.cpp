@@ -73,16 +73,18 @@ PpkSummary summary_of(const PpkResult& result) {
   PpkSummary summary;
   const std::vector<PpkEpoch>& epochs = result.solution.epochs;
   summary.epochs = summary.expected = epochs.size();
-  if (epochs.size() > 1 && result.interval_s > 0.0)
-    summary.expected =
-        std::max(summary.epochs,
-                 static_cast<std::size_t>(std::llround((epochs.back().shown - epochs.front().shown) / result.interval_s)) + 1);
+  if (epochs.size() > 1 && result.solution.interval_s > 0.0)
+    summary.expected = std::max(
+        summary.epochs,
+        static_cast<std::size_t>(std::llround((epochs.back().shown - epochs.front().shown) / result.solution.interval_s)) + 1);
   std::array<std::vector<double>, 3> sds;
   std::vector<double> separations, baselines;
   for (const PpkEpoch& epoch : epochs) {
     count(epoch, summary);
-    if (epoch.quality == FixQuality::kFixed)
-      for (Eigen::Index i = 0; i < 3; ++i) sds[static_cast<std::size_t>(i)].push_back(sd_n(epoch)(i));
+    if (epoch.quality == FixQuality::kFixed) {
+      const Eigen::Vector3d sd = sd_n(epoch);
+      for (Eigen::Index i = 0; i < 3; ++i) sds[static_cast<std::size_t>(i)].push_back(sd(i));
+    }
     if (epoch.quality == FixQuality::kFixed || epoch.quality == FixQuality::kFloat)
       baselines.push_back((epoch.r_e - epoch.r_base_e).norm());
     if (!epoch.separation_n) continue;

@@ -345,7 +345,7 @@ void process(const std::filesystem::path& run_yaml, const CommonOptions& options
   const study::Progress progress = [&line](const char* what, double fraction) { line.show(what, fraction); };
 
   const RunConfig config = read_run_config(run_yaml);
-  Recordings recordings = load(config);
+  Recordings recordings = load(config, [&line](double share) { line.show("solving GNSS positions", share); });
   const std::filesystem::path out = output_folder(run_yaml, options.out);
   line.clear();
   print_inspection(recordings, options.quiet);

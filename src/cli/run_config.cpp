@@ -25,16 +25,10 @@ Eigen::Vector3d positive3(const Node& node) {
   return v;
 }
 
-geo::Geodetic geodetic(const Node& node) {
-  const Eigen::Vector3d v = node.vector3();
-  if (std::abs(v.x()) > 90.0) throw node.error("a latitude beyond 90 deg", "[latitude_deg, longitude_deg, height_m]");
-  return {geo::kDegree * v.x(), geo::kDegree * v.y(), v.z()};
-}
-
 GivenStart start_from(const Node& node) {
   GivenStart start;
   start.time_s = node.at("time_s").number();
-  start.position = geodetic(node.at("position_deg_m"));
+  start.position = geodetic_from(node.at("position_deg_m"));
   start.velocity_n = node.at("velocity_mps").vector3();
   const Eigen::Vector3d attitude = from_degrees(node.at("attitude_deg").vector3());
   start.attitude = {attitude.x(), attitude.y(), attitude.z()};
@@ -170,6 +164,12 @@ void read_gnss(const Node& gnss, RunConfig& run, estimate::NoiseFitChoice& choic
 }
 
 }  // namespace
+
+geo::Geodetic geodetic_from(const Node& node) {
+  const Eigen::Vector3d v = node.vector3();
+  if (std::abs(v.x()) > 90.0) throw node.error("a latitude beyond 90 deg", "[latitude_deg, longitude_deg, height_m]");
+  return {geo::kDegree * v.x(), geo::kDegree * v.y(), v.z()};
+}
 
 study::OutageSweep sweep_from(const Node& node) {
   study::OutageSweep sweep;

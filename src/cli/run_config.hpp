@@ -59,6 +59,9 @@ struct RunConfig {
 /// @throws InputError  anything missing, out of range or unknown, with file and line
 [[nodiscard]] RunConfig read_run_config(const std::filesystem::path& file);
 
+/// [latitude_deg, longitude_deg, height_m]
+[[nodiscard]] geo::Geodetic geodetic_from(const config::Node& node);
+
 /// Keys `every_s`, `first_s`, `durations_s` of a swept study.
 [[nodiscard]] study::OutageSweep sweep_from(const config::Node& node);
 

@@ -11,12 +11,6 @@ namespace {
 
 using record::SatelliteSystem;
 
-std::vector<DifferenceEpoch> differences(const SimulatedBaseline& mission) {
-  const BroadcastOrbits orbits(mission.observed.navigation);
-  return form_differences(mission.observed.rover, mission.observed.base, orbits,
-                          [&](geo::GpsTime) { return std::optional(mission.observed.r_base_e); }, {});
-}
-
 /// Arc of one phase at each epoch that has it.
 std::vector<std::pair<geo::GpsTime, int>> arcs_of(const std::vector<DifferenceEpoch>& epochs, record::Satellite satellite,
                                                   char band) {
@@ -61,7 +55,7 @@ TEST(Differences, EndArcsWhereTheReceiverSaysSoOrBandsJumpApart) {
   simulate::ObservationOptions options;
   options.slips_per_hour = 40.0;
   const SimulatedBaseline mission("car_roundabout", 600.0, options);
-  const std::vector<DifferenceEpoch> epochs = differences(mission);
+  const std::vector<DifferenceEpoch> epochs = mission.differences();
   std::size_t found = 0, counted = 0;
   for (const simulate::CycleSlip& slip : mission.observed.slips) {
     const auto arcs = arcs_of(epochs, slip.satellite, slip.band);
@@ -76,9 +70,23 @@ TEST(Differences, EndArcsWhereTheReceiverSaysSoOrBandsJumpApart) {
   EXPECT_EQ(found, counted);
 }
 
+TEST(Differences, EndAnArcWhereLockIsLostBesideAMissingPhase) {
+  SimulatedBaseline mission("car_roundabout", 360.0, error_free());
+  record::Observation* lost = nullptr;
+  for (record::Observation& o : mission.observed.rover.epochs[100].observations)
+    if (lost == nullptr && o.signal.band == '1') lost = &o;
+  ASSERT_NE(lost, nullptr);
+  lost->lost_lock = true;
+  lost->phase_cycles.reset();
+  const auto arcs = arcs_of(mission.differences(), lost->satellite, '1');
+  ASSERT_EQ(arcs.size(), 359U);
+  EXPECT_EQ(arcs[99].second, arcs[0].second);
+  EXPECT_NE(arcs[100].second, arcs[99].second);
+}
+
 TEST(Differences, KeepOneArcWhereNothingSlips) {
   const SimulatedBaseline mission("car_roundabout", 600.0, simulate::ObservationOptions{});
-  const std::vector<DifferenceEpoch> epochs = differences(mission);
+  const std::vector<DifferenceEpoch> epochs = mission.differences();
   std::map<std::pair<record::Satellite, char>, std::set<int>> arcs;
   for (const DifferenceEpoch& epoch : epochs)
     for (const SatelliteDifference& s : epoch.satellites)
@@ -93,7 +101,7 @@ TEST(Differences, OfABaseAtThirtySecondsAreThoseOfOneAtASecond) {
   const SimulatedBaseline often("car_roundabout", 400.0, options);
   options.base_rate_hz = 1.0 / 30.0;
   const SimulatedBaseline seldom("car_roundabout", 400.0, options);
-  const auto a = differences(often), b = differences(seldom);
+  const auto a = often.differences(), b = seldom.differences();
   ASSERT_EQ(a.size(), b.size());
   double largest = 0.0;
   std::size_t compared = 0;

@@ -14,11 +14,7 @@ namespace {
 class DoubleDifferencesTest : public testing::Test {
  protected:
   void SetUp() override {
-    const BroadcastOrbits orbits(mission_.observed.navigation);
-    DifferenceOptions options;
-    epochs_ = form_differences(
-        mission_.observed.rover, mission_.observed.base, orbits,
-        [&](geo::GpsTime) { return std::optional(mission_.observed.r_base_e); }, options);
+    epochs_ = mission_.differences();
     state_.x.head<3>() = epochs_[100].alone->r_e;
     for (const SatelliteDifference& s : epochs_[100].satellites)
       for (const BandDifference& band : s.bands)

@@ -22,6 +22,13 @@ struct SimulatedBaseline {
   [[nodiscard]] simulate::Kinematics truth(geo::GpsTime t) const {
     return motion.at(std::clamp(t - start, 0.0, motion.duration()));
   }
+  [[nodiscard]] std::vector<DifferenceEpoch> differences() const {
+    const DifferenceOptions options;
+    const SignalChoice signals = choose_signals(observed.rover, observed.base, options.systems);
+    return form_differences(
+        observed.rover, observed.base, signals, BroadcastOrbits(observed.navigation),
+        [this](geo::GpsTime) { return std::optional(observed.r_base_e); }, options);
+  }
   [[nodiscard]] PpkSolution solve(const PpkOptions& options) const {
     const BroadcastOrbits orbits(observed.navigation);
     return solve_ppk(

@@ -248,6 +248,7 @@ TEST_F(SpoiledRinex, IsRefusedByNameOrSolvedRightly) {
     }
     std::ofstream(path, std::ios::binary) << whole;
   }
+  // Most of it can be repaired, and what has no header cannot.
   EXPECT_GT(solved, all.size() / 2);
   EXPECT_GT(refusals, 15U);
 }

@@ -32,25 +32,11 @@ outages: [{elapsed_s: 150, duration_s: 20}]
 start_gps: {week: 2374, sow: 208800}
 seed: 4
 )";
-constexpr const char* kModel = R"(
-schema: coast.imu_error_model/1
-sensor: test
-gyro: {all: [{process: white_noise, density: 0.1, unit: deg/sqrt(h)}, {process: random_constant, sigma: 5, unit: deg/h}]}
-accel: {all: [{process: white_noise, density: 60, unit: ug/sqrt(Hz)}, {process: random_constant, sigma: 1, unit: mg}]}
-)";
 
 /// A simulated recording, made once for the tests of this file.
 const fs::path& recording() {
   static const test::TemporaryDirectory folder;
-  static const fs::path made = [] {
-    write(folder.path() / "scenario.yaml", kScenario);
-    write(folder.path() / "model.yaml", kModel);
-    const Outcome outcome = run(
-        fmt::format("simulate '{}' --out '{}'", (folder.path() / "scenario.yaml").string(), (folder.path() / "rec").string()),
-        folder.path());
-    EXPECT_EQ(outcome.status, 0) << outcome.error;
-    return folder.path() / "rec";
-  }();
+  static const fs::path made = simulated_recording(kScenario, folder.path());
   return made;
 }
 
@@ -334,7 +320,7 @@ TEST(Load, SaysThatLeapSecondsHaveExpired) {
   std::string imu = "time_s,gyro_x_radps,gyro_y_radps,gyro_z_radps,accel_x_mps2,accel_y_mps2,accel_z_mps2\n";
   for (int i = 0; i < 200; ++i) imu += fmt::format("{:.2f},0,0,0,0,0,-9.8\n", 345600.0 + 0.01 * i);
   write(folder.path() / "imu.csv", imu);
-  write(folder.path() / "model.yaml", kModel);
+  write(folder.path() / "model.yaml", kTestModel);
   const auto events_of = [&](std::int64_t unix_s) {
     std::string gnss;
     for (int i = 0; i < 3; ++i) gnss += fmt::format("{},46.5,6.5,400\n", unix_s + i);

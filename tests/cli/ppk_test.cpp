@@ -27,25 +27,11 @@ gnss:
 start_gps: {week: 2374, sow: 208800}
 seed: 4
 )";
-constexpr const char* kQuietModel = R"(
-schema: coast.imu_error_model/1
-sensor: test
-gyro: {all: [{process: white_noise, density: 0.1, unit: deg/sqrt(h)}, {process: random_constant, sigma: 5, unit: deg/h}]}
-accel: {all: [{process: white_noise, density: 60, unit: ug/sqrt(Hz)}, {process: random_constant, sigma: 1, unit: mg}]}
-)";
 
 /// RINEX files of a simulated mission, made once for the tests of this file.
 const fs::path& rinex() {
   static const test::TemporaryDirectory folder;
-  static const fs::path made = [] {
-    write(folder.path() / "scenario.yaml", kMission);
-    write(folder.path() / "model.yaml", kQuietModel);
-    const Outcome outcome = run(
-        fmt::format("simulate '{}' --out '{}'", (folder.path() / "scenario.yaml").string(), (folder.path() / "rec").string()),
-        folder.path());
-    EXPECT_EQ(outcome.status, 0) << outcome.error;
-    return folder.path() / "rec";
-  }();
+  static const fs::path made = simulated_recording(kMission, folder.path());
   return made;
 }
 

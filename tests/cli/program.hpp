@@ -2,6 +2,7 @@
 // The program as a user runs it: exit status, messages, files.
 
 #include <fmt/format.h>
+#include <gtest/gtest.h>
 #include <sys/wait.h>
 
 #include <cstdlib>
@@ -31,6 +32,24 @@ inline Outcome run(const std::string& arguments, const std::filesystem::path& fo
 
 inline void write(const std::filesystem::path& file, const std::string& text) {
   std::ofstream(file, std::ios::binary) << text;
+}
+
+/// A MEMS IMU, for simulated recordings.
+inline constexpr const char* kTestModel = R"(
+schema: coast.imu_error_model/1
+sensor: test
+gyro: {all: [{process: white_noise, density: 0.1, unit: deg/sqrt(h)}, {process: random_constant, sigma: 5, unit: deg/h}]}
+accel: {all: [{process: white_noise, density: 60, unit: ug/sqrt(Hz)}, {process: random_constant, sigma: 1, unit: mg}]}
+)";
+
+/// Simulates a scenario whose error model is model.yaml. @return the folder of the recording, inside `folder`
+inline std::filesystem::path simulated_recording(const std::string& scenario, const std::filesystem::path& folder) {
+  write(folder / "scenario.yaml", scenario);
+  write(folder / "model.yaml", kTestModel);
+  const Outcome outcome =
+      run(fmt::format("simulate '{}' --out '{}'", (folder / "scenario.yaml").string(), (folder / "rec").string()), folder);
+  EXPECT_EQ(outcome.status, 0) << outcome.error;
+  return folder / "rec";
 }
 
 }  // namespace coast::cli

@@ -67,13 +67,16 @@ struct DifferenceOptions {
 /// Every epoch of the rover. Arcs end at loss of lock, at a change of the half-cycle flag, behind gaps, and where the
 /// difference of two bands' phases (geometry-free) jumps; they are the same forward and backward in time.
 [[nodiscard]] std::vector<DifferenceEpoch> form_differences(const record::ObservationRecording& rover,
-                                                            const record::ObservationRecording& base, const Orbits& orbits,
+                                                            const record::ObservationRecording& base,
+                                                            const SignalChoice& signals, const Orbits& orbits,
                                                             const BasePosition& base_position,
                                                             const DifferenceOptions& options);
 
-/// One receiver's single-point solutions, epoch by epoch.
+/// One receiver's single-point solutions, epoch by epoch, from the systems of the options.
 [[nodiscard]] std::vector<std::optional<SinglePoint>> single_points(const record::ObservationRecording& receiver,
-                                                                    const Orbits& orbits, const AirModel& air,
-                                                                    double elevation_mask);
+                                                                    const Orbits& orbits, const DifferenceOptions& options);
+
+/// Median step between epochs, s; 0 with fewer than two.
+[[nodiscard]] double interval_of(const record::ObservationRecording& receiver);
 
 }  // namespace coast::carrier

@@ -102,10 +102,12 @@ struct PpkSolution {
   SignalChoice signals;
   NoiseScale noise;
   AirStates air;
-  record::Events events;
+  double interval_s = 0.0;  ///< of the rover, median
 };
 
-/// Every epoch that has a position, as the filter takes GNSS. @param source  names it in messages
+/// Every epoch that has a position, as the filter takes GNSS. Where a receiver's clock puts an epoch before the one before, it
+/// is left out, with an event.
+/// @param source  names it in messages
 [[nodiscard]] record::GnssRecording to_fixes(const PpkSolution& solution, const std::string& source);
 
 /// Positions of a rover. In a combined solution an epoch has the integers of either pass where the passes agree, floats are
