@@ -26,6 +26,14 @@ struct BaseEpoch {
   std::vector<BaseSatellite> satellites;
 };
 
+/// Of a base that moves, from where it is half a second before and after.
+std::optional<Eigen::Vector3d> velocity_of(const BasePosition& position, geo::GpsTime t) {
+  constexpr double kHalf = 0.5;
+  const std::optional<Eigen::Vector3d> before = position(t - kHalf), after = position(t + kHalf);
+  if (!before || !after) return std::nullopt;
+  return (*after - *before) / (2.0 * kHalf);
+}
+
 std::vector<BaseEpoch> residuals_of(const std::vector<TrackedEpoch>& base, const BasePosition& position,
                                     const DifferenceOptions& options) {
   std::vector<BaseEpoch> epochs;
@@ -34,6 +42,7 @@ std::vector<BaseEpoch> residuals_of(const std::vector<TrackedEpoch>& base, const
     if (!r_e) continue;
     BaseEpoch& epoch = epochs.emplace_back(BaseEpoch{tracked.t, *r_e, {}});
     const geo::Geodetic receiver = geo::geodetic_from_ecef(*r_e);
+    const std::optional<Eigen::Vector3d> v_e = velocity_of(position, tracked.t);
     for (const TrackedSatellite& s : tracked.satellites) {
       const SignalPath path = path_to(s.state, *r_e, receiver, tracked.t, options.air.troposphere);
       if (path.direction.elevation < options.elevation_mask) continue;
@@ -45,6 +54,10 @@ std::vector<BaseEpoch> residuals_of(const std::vector<TrackedEpoch>& base, const
           expected += phase_centre_correction(*options.base_antenna, s.satellite.system, band.band, path.direction);
         if (band.code) *band.code -= expected;
         if (band.phase) *band.phase -= expected;
+        if (band.rate && v_e)
+          *band.rate -= modelled_rate(s.state, *r_e, *v_e);
+        else
+          band.rate.reset();
       }
     }
   }
@@ -102,10 +115,8 @@ class BaseInterpolation {
     std::erase_if(between.bands, [&](TrackedBand& band) {
       const TrackedBand* next = find(*second, band.band);
       if (next == nullptr) return true;
-      if (band.code && next->code)
-        *band.code += pair.w * (*next->code - *band.code);
-      else
-        band.code.reset();
+      interpolate(pair.w, next->code, band.code);
+      interpolate(pair.w, next->rate, band.rate);
       if (band.phase && next->phase && band.arc == next->arc)
         *band.phase += pair.w * (*next->phase - *band.phase);
       else
@@ -116,6 +127,13 @@ class BaseInterpolation {
   }
 
  private:
+  static void interpolate(double w, const std::optional<double>& next, std::optional<double>& value) {
+    if (value && next)
+      *value += w * (*next - *value);
+    else
+      value.reset();
+  }
+
   std::vector<BaseEpoch> epochs_;
   double gap_;
 };
@@ -132,6 +150,7 @@ std::vector<BandDifference> bands_of(const TrackedSatellite& rover, const BaseSa
     if (r.code && b->code) d.code = *r.code - *b->code;
     if (r.phase && b->phase) d.phase = *r.phase - *b->phase;
     if (!d.code && !d.phase) continue;
+    if (r.rate && b->rate) d.rate = *r.rate - *b->rate;
     d.rover_cn0 = r.cn0;
     d.base_cn0 = b->cn0;
     d.half_cycle = r.half_cycle || b->half_cycle;

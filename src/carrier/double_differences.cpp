@@ -22,11 +22,13 @@ double phase_variance(double elevation, double cn0) {
   return kFloor * kFloor * (1.0 + 1.0 / (sine * sine)) + thermal;
 }
 
+using ClockGroup = std::tuple<Observable, record::SatelliteSystem, char>;
+
 /// One observation on its way into the matrices.
 struct Candidate {
-  std::tuple<bool, record::SatelliteSystem, char> group;
+  ClockGroup group;
   Row row;
-  double residual = 0.0;  ///< m
+  double residual = 0.0;  ///< m, m/s
   SignalPath path;
 };
 
@@ -39,35 +41,81 @@ double code_scale(const SatelliteDifference& satellite, const BandDifference& ba
   return kCodeToPhase * weighting.noise.code * inflation;
 }
 
+double rate_variance(double elevation) {
+  constexpr double kZenith = 0.02;  // m/s
+  const double sd = kZenith / std::max(std::sin(elevation), 0.1);
+  return sd * sd;
+}
+
+/// Place of the velocity in a state; -1: it has none.
+Eigen::Index velocity_in(const RelativeState& state) {
+  return state.index(kVelocityUnknowns.front());
+}
+
+/// What a state expects, and how it weighs what it gets.
+class Expectation {
+ public:
+  Expectation(const DifferenceEpoch& epoch, const RelativeState& state, const DifferenceOptions& options,
+              const Weighting& weighting)
+      : epoch_(epoch),
+        state_(state),
+        options_(options),
+        weighting_(weighting),
+        r_e_(state.x.head<3>()),
+        rover_(geo::geodetic_from_ecef(r_e_)) {
+    if (const Eigen::Index i = velocity_in(state); i >= 0) v_e_ = state.x.segment<3>(i);
+  }
+
+  /// All observations of one satellite; none below the mask.
+  void add(std::size_t s, std::vector<Candidate>& all) const {
+    const SatelliteDifference& satellite = epoch_.satellites[s];
+    const SignalPath path = path_to(satellite.state, r_e_, rover_, epoch_.t, options_.air.troposphere);
+    if (path.direction.elevation < options_.elevation_mask) return;
+    for (std::size_t b = 0; b < satellite.bands.size(); ++b) {
+      const BandDifference& band = satellite.bands[b];
+      const double sd = nominal_phase_sd(path.direction.elevation, satellite.base_elevation, band);
+      const auto candidate = [&](Observable observable, double scaled_sd, double residual) {
+        all.push_back({clock_of(observable, satellite.satellite.system, band.band),
+                       {s, b, observable, scaled_sd, path.direction},
+                       residual,
+                       path});
+      };
+      double expected = path.modelled(satellite.state);
+      if (options_.rover_antenna)
+        expected += phase_centre_correction(*options_.rover_antenna, satellite.satellite.system, band.band, path.direction);
+      const bool started = state_.index({Kind::kAmbiguity, satellite.satellite, band.band, band.arc}) >= 0;  // by a code
+      if (band.code) candidate(Observable::kCode, code_scale(satellite, band, weighting_) * sd, *band.code - expected);
+      if (band.phase && started) candidate(Observable::kPhase, weighting_.noise.phase * sd, *band.phase - expected);
+      if (band.rate && v_e_)
+        candidate(Observable::kRate,
+                  weighting_.noise.rate *
+                      std::sqrt(rate_variance(path.direction.elevation) + rate_variance(satellite.base_elevation)),
+                  *band.rate - modelled_rate(satellite.state, r_e_, *v_e_));
+    }
+  }
+
+ private:
+  /// What rows with the same have in common.
+  [[nodiscard]] ClockGroup clock_of(Observable observable, record::SatelliteSystem system, char band) const {
+    const bool one = observable == Observable::kRate || (observable == Observable::kPhase && weighting_.one_phase_clock);
+    return one ? ClockGroup{observable, record::SatelliteSystem::kGps, '0'} : ClockGroup{observable, system, band};
+  }
+
+  const DifferenceEpoch& epoch_;
+  const RelativeState& state_;
+  const DifferenceOptions& options_;
+  const Weighting& weighting_;
+  Eigen::Vector3d r_e_;
+  geo::Geodetic rover_;
+  std::optional<Eigen::Vector3d> v_e_;
+};
+
 std::vector<Candidate> candidates(const DifferenceEpoch& epoch, const RelativeState& state, const LeftOut& left_out,
                                   const DifferenceOptions& options, const Weighting& weighting) {
   std::vector<Candidate> all;
-  const Eigen::Vector3d r_e = state.x.head<3>();
-  const geo::Geodetic rover = geo::geodetic_from_ecef(r_e);
-  for (std::size_t s = 0; s < epoch.satellites.size(); ++s) {
-    const SatelliteDifference& satellite = epoch.satellites[s];
-    const SignalPath path = path_to(satellite.state, r_e, rover, epoch.t, options.air.troposphere);
-    if (path.direction.elevation < options.elevation_mask) continue;
-    const double modelled = path.modelled(satellite.state);
-    for (std::size_t b = 0; b < satellite.bands.size(); ++b) {
-      const BandDifference& band = satellite.bands[b];
-      double expected = modelled;
-      if (options.rover_antenna)
-        expected += phase_centre_correction(*options.rover_antenna, satellite.satellite.system, band.band, path.direction);
-      for (const bool phase : {true, false}) {
-        const std::optional<double>& observed = phase ? band.phase : band.code;
-        if (!observed || left_out.contains({s, b, phase})) continue;
-        const Unknown ambiguity{Kind::kAmbiguity, satellite.satellite, band.band, band.arc};
-        if (phase && state.index(ambiguity) < 0) continue;  // no code has told where to begin
-        const double sd = nominal_phase_sd(path.direction.elevation, satellite.base_elevation, band);
-        const double scale = phase ? weighting.noise.phase : code_scale(satellite, band, weighting);
-        all.push_back({{phase, satellite.satellite.system, band.band},
-                       {s, b, phase, scale * sd, path.direction},
-                       *observed - expected,
-                       path});
-      }
-    }
-  }
+  const Expectation expectation(epoch, state, options, weighting);
+  for (std::size_t s = 0; s < epoch.satellites.size(); ++s) expectation.add(s, all);
+  std::erase_if(all, [&](const Candidate& c) { return left_out.contains({c.row.satellite, c.row.band, c.row.observable}); });
   std::ranges::stable_sort(all, {}, &Candidate::group);
   return all;
 }
@@ -76,6 +124,12 @@ void fill(const Candidate& c, const DifferenceEpoch& epoch, const RelativeState&
   const SatelliteDifference& satellite = epoch.satellites[c.row.satellite];
   const BandDifference& band = satellite.bands[c.row.band];
   const double weight = 1.0 / c.row.sd;
+  if (c.row.observable == Observable::kRate) {  // what turns with the position, 0.2 mm/s a metre, is nothing
+    dd.H.block<1, 3>(i, velocity_in(state)) = -weight * c.path.to_satellite_e.transpose();
+    dd.residual(i) = weight * c.residual;
+    return;
+  }
+  const bool phase = c.row.observable == Observable::kPhase;
   double residual = c.residual;
   const auto add = [&](const Unknown& unknown, double factor) {
     const Eigen::Index column = state.index(unknown);
@@ -86,8 +140,8 @@ void fill(const Candidate& c, const DifferenceEpoch& epoch, const RelativeState&
   dd.H.block<1, 3>(i, 0) = -weight * c.path.to_satellite_e.transpose();
   add({Kind::kZenithDelay, {}, '0', 0}, c.path.wet_mapping);
   const double squared = kL1Frequency / band.frequency * kL1Frequency / band.frequency;
-  add({Kind::kIonosphere, satellite.satellite, '0', 0}, c.row.phase ? -squared : squared);
-  if (c.row.phase) add({Kind::kAmbiguity, satellite.satellite, band.band, band.arc}, band.wavelength());
+  add({Kind::kIonosphere, satellite.satellite, '0', 0}, phase ? -squared : squared);
+  if (phase) add({Kind::kAmbiguity, satellite.satellite, band.band, band.arc}, band.wavelength());
   dd.residual(i) = weight * residual;
 }
 

@@ -28,7 +28,7 @@ std::vector<Fixable> fixable(const DifferenceEpoch& epoch, const FloatEpoch& upd
                              double elevation_mask) {
   std::vector<Fixable> all;
   for (const Row& row : updated.dd.rows) {
-    if (!row.phase || row.direction.elevation < elevation_mask) continue;
+    if (row.observable != Observable::kPhase || row.direction.elevation < elevation_mask) continue;
     const SatelliteDifference& satellite = epoch.satellites[row.satellite];
     const BandDifference& band = satellite.bands[row.band];
     // Frequencies of GLONASS differ: its double differences are not integers.
@@ -55,6 +55,19 @@ Eigen::MatrixXd differencing(const std::vector<Fixable>& set, Eigen::Index state
     }
   }
   return D;
+}
+
+/// The rows of D by name.
+std::vector<FixedPair> pairs_of(const Eigen::MatrixXd& D, const RelativeState& state, const Eigen::VectorXd& integers) {
+  std::vector<FixedPair> pairs;
+  for (Eigen::Index row = 0; row < D.rows(); ++row) {
+    Eigen::Index ambiguity = 0, reference = 0;
+    D.row(row).maxCoeff(&ambiguity);
+    D.row(row).minCoeff(&reference);
+    const auto name = [&](Eigen::Index i) { return state.unknowns()[static_cast<std::size_t>(i)]; };
+    pairs.push_back({name(ambiguity), name(reference), integers(row)});
+  }
+  return pairs;
 }
 
 /// One set of ambiguities with its best integers.
@@ -199,11 +212,52 @@ FixedSolution AmbiguityFixing::fix(const DifferenceEpoch& epoch, const FloatEpoc
   const Eigen::MatrixXd position = best->PDt.topRows<3>();
   solution.position_covariance_e = state.P.topLeftCorner<3, 3>() - position * Q.solve(position.transpose());
   solution.satellites = satellites_of(best->set);
+  solution.pairs = pairs_of(best->D, state, best->integers.candidates.col(0));
   without_ = satellites_of(all);
   std::erase_if(without_, [&](Satellite s) { return std::ranges::find(solution.satellites, s) != solution.satellites.end(); });
   solution.ambiguities = static_cast<int>(best->a.size());
   solution.fixed = true;
   return solution;
+}
+
+std::vector<FixedPair> IntegerHold::agreed(const FixedSolution& fixed) {
+  constexpr int kEnough = 3;  // epochs
+  std::map<Unknown, Candidate> next;
+  std::map<Unknown, double> offsets;  // of each reference: what it was against the reference of its group then
+  for (const FixedPair& p : fixed.pairs) {
+    const auto reference = candidates_.find(p.reference), then = candidates_.find(p.ambiguity);
+    if (reference != candidates_.end())
+      offsets.emplace(p.reference, reference->second.value);
+    else if (then != candidates_.end())
+      offsets.emplace(p.reference, then->second.value - p.integer);
+    next.emplace(p.reference, Candidate{0.0, reference == candidates_.end() ? 1 : reference->second.epochs + 1});
+  }
+  for (const FixedPair& p : fixed.pairs) {
+    const auto then = candidates_.find(p.ambiguity);
+    const auto offset = offsets.find(p.reference);
+    const bool same = then != candidates_.end() && offset != offsets.end() && then->second.value - offset->second == p.integer;
+    next[p.ambiguity] = {p.integer, same ? then->second.epochs + 1 : 1};
+  }
+  candidates_ = std::move(next);
+  std::vector<FixedPair> pairs = fixed.pairs;
+  std::erase_if(pairs, [&](const FixedPair& p) {
+    return candidates_.at(p.ambiguity).epochs < kEnough || candidates_.at(p.reference).epochs < kEnough;
+  });
+  return pairs;
+}
+
+HeldIntegers held(const std::vector<FixedPair>& pairs, const RelativeState& state) {
+  constexpr double kSd = 0.01;  // cycles: what held ambiguities may still be bent by phase multipath
+  const auto rows = static_cast<Eigen::Index>(pairs.size());
+  HeldIntegers h{Eigen::MatrixXd::Zero(rows, state.size()), Eigen::VectorXd(rows)};
+  for (Eigen::Index row = 0; row < rows; ++row) {
+    const FixedPair& p = pairs[static_cast<std::size_t>(row)];
+    const Eigen::Index ambiguity = state.index(p.ambiguity), reference = state.index(p.reference);
+    h.H(row, ambiguity) = 1.0 / kSd;
+    h.H(row, reference) = -1.0 / kSd;
+    h.nu(row) = (p.integer - (state.x(ambiguity) - state.x(reference))) / kSd;
+  }
+  return h;
 }
 
 }  // namespace coast::carrier

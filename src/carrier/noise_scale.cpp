@@ -2,6 +2,7 @@
 #include <cmath>
 #include <set>
 
+#include "double_differences.hpp"
 #include "pass.hpp"
 
 namespace coast::carrier {
@@ -91,7 +92,32 @@ NoiseScale estimate_noise(const std::vector<PpkEpoch>& epochs, const NoiseScale&
     codes.freedom += code.freedom;
   }
   return {std::clamp(noise.phase * phases.scale(1.0), kLeast, kMost), std::clamp(noise.code * codes.scale(1.0), kLeast, kMost),
-          std::sqrt(inflation(epochs))};
+          std::sqrt(inflation(epochs)), noise.rate};
+}
+
+double estimate_rate_noise(const std::vector<DifferenceEpoch>& differences, const std::vector<PpkEpoch>& solved,
+                           const DifferenceOptions& options) {
+  constexpr double kMedian = 0.4549;  // of a squared unit normal; the median, because velocities are means over an epoch
+  constexpr double kLeast = 0.05, kMost = 100.0;
+  constexpr std::size_t kEnough = 30;
+  std::vector<double> squares;
+  for (std::size_t i = 0; i < solved.size(); ++i) {
+    if (solved[i].quality != record::FixQuality::kFixed || !solved[i].velocity) continue;
+    Eigen::VectorXd x(6);
+    x << solved[i].r_e, solved[i].velocity->v_e;
+    const RelativeState state({kVelocityUnknowns.begin(), kVelocityUnknowns.end()}, x, Eigen::MatrixXd::Zero(6, 6));
+    const DoubleDifferences dd = double_differences(differences[i], state, {}, options, {});
+    const Eigen::VectorXd y = dd.B * dd.residual;
+    for (Eigen::Index k = 0; k < y.size(); ++k) {
+      Eigen::Index of = 0;
+      dd.B.row(k).cwiseAbs().maxCoeff(&of);
+      if (dd.rows[static_cast<std::size_t>(of)].observable == Observable::kRate) squares.push_back(y(k) * y(k));
+    }
+  }
+  if (squares.size() < kEnough) return 1.0;
+  const auto middle = squares.begin() + static_cast<std::ptrdiff_t>(squares.size() / 2);
+  std::ranges::nth_element(squares, middle);
+  return std::clamp(std::sqrt(*middle / kMedian), kLeast, kMost);
 }
 
 }  // namespace coast::carrier

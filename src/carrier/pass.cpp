@@ -35,8 +35,10 @@ void add_residuals(const DifferenceEpoch& epoch, const FloatEpoch& updated, cons
   for (std::size_t i = 0; i < dd.rows.size(); ++i) {
     const Row& row = dd.rows[i];
     const SatelliteDifference& satellite = epoch.satellites[row.satellite];
-    const bool is_fixed = row.phase && std::ranges::find(fixed.satellites, satellite.satellite) != fixed.satellites.end();
-    solved.residuals.push_back({satellite.satellite, satellite.bands[row.band].band, row.phase,
+    if (row.observable == Observable::kRate) continue;
+    const bool phase = row.observable == Observable::kPhase;
+    const bool is_fixed = phase && std::ranges::find(fixed.satellites, satellite.satellite) != fixed.satellites.end();
+    solved.residuals.push_back({satellite.satellite, satellite.bands[row.band].band, phase,
                                 left(static_cast<Eigen::Index>(i)) * row.sd, row.sd, row.direction,
                                 is_fixed ? SignalResidual::Use::kFixed : SignalResidual::Use::kFloat});
   }
@@ -97,7 +99,8 @@ bool badly_placed(double pdop, const Eigen::Matrix3d& covariance_e) {
   return pdop > kMostPdop || !(covariance_e.trace() < kMostSd * kMostSd);
 }
 
-PpkEpoch solve(const DifferenceEpoch& epoch, const PpkOptions& options, RelativeFilter& filter, AmbiguityFixing& fixing) {
+PpkEpoch solve(const DifferenceEpoch& epoch, const PpkOptions& options, RelativeFilter& filter, AmbiguityFixing& fixing,
+               IntegerHold& hold) {
   PpkEpoch solved = alone(epoch);
   const FloatEpoch updated = filter.step(epoch);
   solved.residuals = updated.left_out;
@@ -121,6 +124,10 @@ PpkEpoch solve(const DifferenceEpoch& epoch, const PpkOptions& options, Relative
   solved.quality = precise ? record::FixQuality::kFixed : record::FixQuality::kFloat;
   solved.covariance_e += air_covariance(satellites, state.x.head<3>(), epoch, options);
   add_residuals(epoch, updated, x - (state.x - updated.step), fixed, solved);
+  if (options.fixing.hold && fixed.fixed) {
+    const HeldIntegers integers = held(hold.agreed(fixed), state);
+    if (integers.nu.size() > 0) filter.absorb(integers.H, integers.nu);
+  }
   return solved;
 }
 
@@ -131,9 +138,10 @@ std::vector<PpkEpoch> solve_pass(const std::vector<DifferenceEpoch>& epochs, con
   std::vector<PpkEpoch> solved(epochs.size());
   RelativeFilter filter(options, interval);
   AmbiguityFixing fixing(options.fixing);
+  IntegerHold hold;
   for (std::size_t k = 0; k < epochs.size(); ++k) {
     const std::size_t i = backward ? epochs.size() - 1 - k : k;
-    solved[i] = solve(epochs[i], options, filter, fixing);
+    solved[i] = solve(epochs[i], options, filter, fixing, hold);
     if (progress) progress(static_cast<double>(k + 1) / static_cast<double>(epochs.size()));
   }
   return solved;

@@ -15,6 +15,10 @@ std::vector<PpkEpoch> solve_pass(const std::vector<DifferenceEpoch>& epochs, con
 /// @param noise  that the pass was weighted with
 NoiseScale estimate_noise(const std::vector<PpkEpoch>& epochs, const NoiseScale& noise);
 
+/// The same of Doppler, against positions and velocities that are known well.
+double estimate_rate_noise(const std::vector<DifferenceEpoch>& differences, const std::vector<PpkEpoch>& solved,
+                           const DifferenceOptions& options);
+
 /// Both ways in one.
 std::vector<PpkEpoch> combine(const std::vector<PpkEpoch>& forward, const std::vector<PpkEpoch>& backward);
 

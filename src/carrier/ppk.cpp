@@ -104,7 +104,7 @@ PpkSolution solve_ppk(const record::ObservationRecording& rover, const record::O
   PpkSolution solution;
   solution.interval_s = interval_of(rover);
   solution.signals = choose_signals(rover, base, options.differences.systems);
-  const std::vector<DifferenceEpoch> epochs =
+  std::vector<DifferenceEpoch> epochs =
       form_differences(rover, base, solution.signals, orbits, base_position, options.differences);
   check(rover, base, solution, epochs);
   PpkOptions settled = options;
@@ -123,6 +123,8 @@ PpkSolution solve_ppk(const record::ObservationRecording& rover, const record::O
   if (combined)
     solution.epochs = combine(solution.epochs, solve_pass(epochs, settled, solution.interval_s, true, stages.next()));
   add_phase_velocities(epochs, solution.noise, options.differences, solution.epochs);
+  if (!options.noise) solution.noise.rate = estimate_rate_noise(epochs, solution.epochs, options.differences);
+  solution.differences = std::move(epochs);
   return solution;
 }
 

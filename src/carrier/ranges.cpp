@@ -43,4 +43,13 @@ SignalPath path_to(const SatelliteState& satellite, const Eigen::Vector3d& r_rec
   return path;
 }
 
+double modelled_rate(const SatelliteState& satellite, const Eigen::Vector3d& r_receiver_e,
+                     const Eigen::Vector3d& v_receiver_e) {
+  const Eigen::Vector3d to_satellite_e = (satellite.r_e - r_receiver_e).normalized();
+  const double sagnac = geo::kEarthRate / kSpeedOfLight *
+                        (satellite.v_e.x() * r_receiver_e.y() - satellite.v_e.y() * r_receiver_e.x() +
+                         satellite.r_e.x() * v_receiver_e.y() - satellite.r_e.y() * v_receiver_e.x());
+  return to_satellite_e.dot(satellite.v_e - v_receiver_e) + sagnac - kSpeedOfLight * satellite.clock_rate;
+}
+
 }  // namespace coast::carrier

@@ -88,6 +88,7 @@ std::vector<TrackedBand> bands_of(OfSatellite observations, geo::GpsTime t, int 
     band.frequency = *f;
     band.code = o.code_m;
     if (o.phase_cycles) band.phase = *o.phase_cycles * kSpeedOfLight / *f;
+    if (o.doppler_hz) band.rate = -*o.doppler_hz * kSpeedOfLight / *f;
     band.cn0 = o.cn0_dbhz.value_or(0.0);
     band.half_cycle = o.half_cycle;
     band.arc = arcs.arc_of(o, t);

@@ -10,6 +10,7 @@ struct TrackedBand {
   double frequency = 0.0;  ///< Hz
   std::optional<double> code;
   std::optional<double> phase;  ///< m
+  std::optional<double> rate;   ///< by Doppler, m/s
   double cn0 = 0.0;             ///< dB-Hz, 0 where unknown
   bool half_cycle = false;
   int arc = 0;

@@ -34,10 +34,10 @@ std::optional<double> from_code(const SatelliteDifference& satellite, const Band
   return (*band.phase - *code) / band.wavelength();
 }
 
-Innovation innovation_of(const DoubleDifferences& dd, const RelativeState& state) {
+Innovation innovation_of(Eigen::MatrixXd H, Eigen::VectorXd v, const RelativeState& state) {
   Innovation in;
-  in.H = dd.B * dd.H;
-  in.v = dd.B * dd.residual;
+  in.H = std::move(H);
+  in.v = std::move(v);
   in.PHt = state.P * in.H.transpose();
   Eigen::MatrixXd S = in.H * in.PHt;
   S.diagonal().array() += 1.0;
@@ -66,11 +66,24 @@ std::optional<std::size_t> outlier(const DoubleDifferences& dd, const Innovation
 
 SignalResidual left_out(const DifferenceEpoch& epoch, const Row& row, double residual) {
   const SatelliteDifference& satellite = epoch.satellites[row.satellite];
-  return {satellite.satellite, satellite.bands[row.band].band, row.phase, residual * row.sd, row.sd,
+  return {satellite.satellite, satellite.bands[row.band].band, row.observable == Observable::kPhase, residual * row.sd, row.sd,
           row.direction,       SignalResidual::Use::kLeftOut};
 }
 
 }  // namespace
+
+double longest_unseen(const Unknown& unknown, double interval) {
+  constexpr double kIonosphere = 600.0;  // s: until then what was known of it is worth something
+  const double gap = longest_gap(interval);
+  return unknown.kind == Kind::kAmbiguity ? gap : std::max(gap, kIonosphere);
+}
+
+RelativeFilter RelativeFilter::coupled(const PpkOptions& options, double interval) {
+  RelativeFilter filter(options, interval);
+  filter.fewest_ = 2;
+  filter.weighting_.one_phase_clock = true;
+  return filter;
+}
 
 RelativeFilter::RelativeFilter(const PpkOptions& options, double interval) : options_(options), interval_(interval) {
   if (options.noise) weighting_.noise = *options.noise;
@@ -87,6 +100,25 @@ FloatEpoch RelativeFilter::step(const DifferenceEpoch& epoch) {
     result.shortfall = Shortfall::kNoPosition;
     return result;
   }
+  return step_with_position(epoch, dt);
+}
+
+FloatEpoch RelativeFilter::step_from(RelativeState prior, const DifferenceEpoch& epoch) {
+  const double dt = started_ ? std::abs(epoch.t - last_) : 0.0;
+  state_ = std::move(prior);
+  for (const Unknown& unknown : state_.unknowns())  // of an earlier run, from which this one goes on
+    if (unknown.kind == Kind::kAmbiguity || unknown.kind == Kind::kIonosphere) {
+      const bool resumed = seen_.try_emplace(unknown, started_ ? last_ : epoch.t).second;
+      if (resumed && unknown.kind == Kind::kAmbiguity) weighting_.known.insert(unknown);
+    }
+  if (epoch.age_s) return step_with_position(epoch, dt);
+  FloatEpoch result;
+  result.shortfall = Shortfall::kNoBase;
+  return result;
+}
+
+FloatEpoch RelativeFilter::step_with_position(const DifferenceEpoch& epoch, double dt) {
+  FloatEpoch result;
   forget_unseen(epoch);
   predict_ambiguities(epoch, dt);
   const AirStates air = options_.air.value_or(AirStates{});
@@ -117,12 +149,9 @@ bool RelativeFilter::predict_position(const DifferenceEpoch& epoch, double dt) {
 }
 
 void RelativeFilter::forget_unseen(const DifferenceEpoch& epoch) {
-  constexpr double kIonosphere = 600.0;  // s: until then what was known of it is worth something
-  const double gap = longest_gap(interval_);
   state_.remove_if([&](const Unknown& unknown) {
     if (unknown.kind != Kind::kAmbiguity && unknown.kind != Kind::kIonosphere) return false;
-    const double longest = unknown.kind == Kind::kAmbiguity ? gap : std::max(gap, kIonosphere);
-    return std::abs(epoch.t - seen_.at(unknown)) > longest;
+    return std::abs(epoch.t - seen_.at(unknown)) > longest_unseen(unknown, interval_);
   });
 }
 
@@ -137,7 +166,7 @@ void RelativeFilter::predict_zenith_delay(const Eigen::Vector3d& baseline_e, con
   if (i < 0)
     state_.add(unknown, 0.0, sd * sd);
   else
-    state_.P(i, i) += kWalk * kWalk * dt;
+    state_.evolve(i, 1.0, kWalk * kWalk * dt);
 }
 
 /// Differences between receivers grow with the distance, a millimetre a km in quiet times, and change within half an hour.
@@ -148,10 +177,8 @@ void RelativeFilter::predict_ionosphere(const DifferenceEpoch& epoch, double bas
   for (Eigen::Index i = 3; i < state_.size(); ++i) {
     const Unknown& unknown = state_.unknowns()[static_cast<std::size_t>(i)];
     if (unknown.kind != Kind::kIonosphere) continue;
-    state_.x(i) *= phi;
-    state_.P.row(i) *= phi;
-    state_.P.col(i) *= phi;
-    state_.P(i, i) += (1.0 - phi * phi) * ionosphere_.at(unknown);
+    const auto variance = ionosphere_.find(unknown);
+    state_.evolve(i, phi, variance == ionosphere_.end() ? 0.0 : (1.0 - phi * phi) * variance->second);
   }
   for (const SatelliteDifference& satellite : epoch.satellites) {
     const Unknown unknown{Kind::kIonosphere, satellite.satellite, '0', 0};
@@ -166,7 +193,7 @@ void RelativeFilter::predict_ionosphere(const DifferenceEpoch& epoch, double bas
 void RelativeFilter::predict_ambiguities(const DifferenceEpoch& epoch, double dt) {
   for (Eigen::Index i = 3; i < state_.size(); ++i)
     if (state_.unknowns()[static_cast<std::size_t>(i)].kind == Kind::kAmbiguity)
-      state_.P(i, i) += kAmbiguityWalk * kAmbiguityWalk * dt;
+      state_.evolve(i, 1.0, kAmbiguityWalk * kAmbiguityWalk * dt);
   for (const SatelliteDifference& satellite : epoch.satellites)
     for (const BandDifference& band : satellite.bands) {
       if (!band.phase) continue;
@@ -185,17 +212,16 @@ void RelativeFilter::start_anew(const SatelliteDifference& satellite, const Band
 }
 
 void RelativeFilter::update(const DifferenceEpoch& epoch, FloatEpoch& result) {
-  constexpr std::size_t kFewest = 4;
   LeftOut out;
   for (;;) {
     result.dd = double_differences(epoch, state_, out, options_.differences, weighting_);
     std::set<std::size_t> satellites;
     for (const Row& row : result.dd.rows) satellites.insert(row.satellite);
-    if (satellites.size() < kFewest || result.dd.empty()) {
+    if (satellites.size() < fewest_ || result.dd.empty()) {
       result.shortfall = out.empty() ? Shortfall::kFewSatellites : Shortfall::kContradiction;
       return;
     }
-    const Innovation in = innovation_of(result.dd, state_);
+    const Innovation in = innovation_of(result.dd.B * result.dd.H, result.dd.B * result.dd.residual, state_);
     if (in.S.info() != Eigen::Success || !in.v.allFinite()) {  // nothing of the state can be trusted
       state_ = RelativeState();
       started_ = false;
@@ -208,20 +234,34 @@ void RelativeFilter::update(const DifferenceEpoch& epoch, FloatEpoch& result) {
       return;
     }
     const Row& row = result.dd.rows[*worst];
-    result.left_out.push_back(left_out(epoch, row, result.dd.residual(static_cast<Eigen::Index>(*worst))));
-    out.insert({row.satellite, row.band, row.phase});
-    if (row.phase) start_anew(epoch.satellites[row.satellite], epoch.satellites[row.satellite].bands[row.band]);
+    if (row.observable != Observable::kRate)
+      result.left_out.push_back(left_out(epoch, row, result.dd.residual(static_cast<Eigen::Index>(*worst))));
+    out.insert({row.satellite, row.band, row.observable});
+    if (row.observable == Observable::kPhase)
+      start_anew(epoch.satellites[row.satellite], epoch.satellites[row.satellite].bands[row.band]);
   }
 }
 
-void RelativeFilter::apply(const Innovation& in, const DifferenceEpoch& epoch, FloatEpoch& result) {
+Eigen::VectorXd RelativeFilter::absorb(const Innovation& in) {
   const Eigen::MatrixXd W = in.S.matrixL().solve(in.PHt.transpose());
-  result.step = W.transpose() * in.S.matrixL().solve(in.v);
-  state_.x += result.step;
+  const Eigen::VectorXd step = W.transpose() * in.S.matrixL().solve(in.v);
+  state_.x += step;
   state_.P -= W.transpose() * W;
+  return step;
+}
+
+void RelativeFilter::absorb(const Eigen::MatrixXd& H, const Eigen::VectorXd& v) {
+  absorb(innovation_of(H, v, state_));
+}
+
+void RelativeFilter::apply(const Innovation& in, const DifferenceEpoch& epoch, FloatEpoch& result) {
+  result.step = absorb(in);
+  result.H = in.H;
+  result.nu = in.v;
+  result.nis = in.S.matrixL().solve(in.v).squaredNorm();
   result.updated = true;
   for (const Row& row : result.dd.rows)
-    if (!row.phase)
+    if (row.observable == Observable::kCode)
       weighting_.known.insert(ambiguity_of(epoch.satellites[row.satellite], epoch.satellites[row.satellite].bands[row.band]));
 }
 

@@ -12,12 +12,15 @@ namespace coast::carrier {
 struct FloatEpoch {
   bool updated = false;  ///< double differences have been used
   DoubleDifferences dd;  ///< as used, linearised at the predicted position
+  Eigen::MatrixXd H;     ///< of the differences, whitened
+  Eigen::VectorXd nu;    ///< their innovations
+  double nis = 0.0;      ///< normalised innovations squared
   Eigen::VectorXd step;  ///< of the state, by the update
   std::vector<SignalResidual> left_out;
   Shortfall shortfall = Shortfall::kNone;
 };
 
-/// Whitened double differences with their predicted covariance.
+/// Measurements of unit variance with their predicted covariance.
 struct Innovation {
   Eigen::MatrixXd H;
   Eigen::VectorXd v;
@@ -25,16 +28,27 @@ struct Innovation {
   Eigen::LLT<Eigen::MatrixXd> S;
 };
 
+/// How long an unknown of a satellite outlives its last observation, s.
+double longest_unseen(const Unknown& unknown, double interval);
+
 class RelativeFilter {
  public:
   /// Options with `air` and `noise` settled.
   RelativeFilter(const PpkOptions& options, double interval);
+  /// For one that knows positions from elsewhere: two satellites tell it something.
+  static RelativeFilter coupled(const PpkOptions& options, double interval);
 
   /// Epochs in order of time, or all of them against it.
   FloatEpoch step(const DifferenceEpoch& epoch);
+  /// The same for one who knows beforehand where the rover is: `prior` takes the place of this filter's own state.
+  FloatEpoch step_from(RelativeState prior, const DifferenceEpoch& epoch);
+  /// Takes further measurements of unit variance: v = H (truth - state) + noise.
+  void absorb(const Eigen::MatrixXd& H, const Eigen::VectorXd& v);
   [[nodiscard]] const RelativeState& state() const { return state_; }
+  [[nodiscard]] std::vector<StateChange> take_changes() { return state_.take_changes(); }
 
  private:
+  FloatEpoch step_with_position(const DifferenceEpoch& epoch, double dt);
   bool predict_position(const DifferenceEpoch& epoch, double dt);
   void forget_unseen(const DifferenceEpoch& epoch);
   void predict_ambiguities(const DifferenceEpoch& epoch, double dt);
@@ -44,10 +58,13 @@ class RelativeFilter {
   /// Finds what contradicts the rest, leaves codes out, forgets ambiguities of phases; then updates.
   void update(const DifferenceEpoch& epoch, FloatEpoch& result);
   void apply(const Innovation& in, const DifferenceEpoch& epoch, FloatEpoch& result);
+  /// @return the step of the state
+  Eigen::VectorXd absorb(const Innovation& in);
 
   const PpkOptions& options_;
   Weighting weighting_;
   double interval_;
+  std::size_t fewest_ = 4;  ///< satellites with which an epoch is used
   RelativeState state_;
   bool started_ = false;
   geo::GpsTime last_;

@@ -133,9 +133,7 @@ std::optional<SinglePoint::Velocity> velocity(const Solved& s, const std::vector
     const CodeMeasurement& m = measurements[s.at.used[i]];
     if (!m.range_rate) continue;
     const Eigen::Vector3d to_satellite = (m.state.r_e - s.r_e).normalized();
-    // The Earth's rotation under way adds its share to the rate (Sagnac).
-    const double sagnac = geo::kEarthRate / kSpeedOfLight * (m.state.v_e.x() * s.r_e.y() - m.state.v_e.y() * s.r_e.x());
-    const double expected = to_satellite.dot(m.state.v_e) + sagnac - kSpeedOfLight * m.state.clock_rate;
+    const double expected = modelled_rate(m.state, s.r_e, Eigen::Vector3d::Zero());
     const double weight = std::max(to_satellite.dot(s.r_e.normalized()), 0.1);  // the elevation's sine, about
     Eigen::Vector4d h;
     h << -to_satellite, 1.0;

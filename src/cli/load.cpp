@@ -32,7 +32,7 @@ void check_leap_seconds(const io::TimeOptions& time, const std::string& source, 
 
 // Positions from the rover's and the base's observations; what was found of them is told like the rest.
 void read_with_ppk(const RunConfig& config, const std::function<void(double)>& progress, Recordings& recordings) {
-  const PpkResult ppk = run_ppk(*config.ppk, progress);
+  PpkResult ppk = run_ppk(*config.ppk, progress);
   recordings.gnss = ppk.fixes;
   recordings.gnss.events = ppk.events;
   recordings.inspection = ppk_sentences(ppk);
@@ -40,6 +40,9 @@ void read_with_ppk(const RunConfig& config, const std::function<void(double)>& p
     throw InputError({config.ppk->rover.string(), 0, "no epoch with a position", "codes of four satellites or more",
                       "Run `coast ppk` on it: its page says what is missing."});
   recordings.imu = io::read_imu(config.imu, recordings.gnss.fixes.front().t);
+  if (config.tight)
+    recordings.carrier = std::make_shared<const estimate::CarrierObservations>(
+        estimate::carrier_observations(std::move(ppk.solution), ppk.options));
 }
 
 }  // namespace
@@ -98,6 +101,7 @@ ins::InitialState start_of(const GivenStart& start, geo::GpsTime near) {
 
 study::Setup setup_of(const RunConfig& config, const Recordings& recordings, const std::optional<study::OutageSweep>& sweep) {
   study::Setup setup = config.setup;
+  setup.carrier = recordings.carrier;
   const geo::GpsTime first_fix = recordings.gnss.fixes.front().t;
   if (config.start) setup.start = start_of(*config.start, first_fix);
   const auto studied_from = [&setup](geo::GpsTime t) {

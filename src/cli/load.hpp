@@ -18,7 +18,8 @@ struct Recordings {
   record::ImuRecording imu;  ///< body axes
   record::GnssRecording gnss;
   std::optional<record::Trajectory> reference;
-  std::vector<std::string> inspection;  ///< what was understood, sentence by sentence
+  std::shared_ptr<const estimate::CarrierObservations> carrier;  ///< for tight coupling
+  std::vector<std::string> inspection;                           ///< what was understood, sentence by sentence
   record::Events inspection_events;
 };
 

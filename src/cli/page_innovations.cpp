@@ -27,6 +27,17 @@ Records of_kind(const ProcessPage& page, UpdateKind kind) {
   return records;
 }
 
+/// Fixes, or the carrier phases that stand in their place.
+Records positions_of(const ProcessPage& page) {
+  Records fixes = of_kind(page, UpdateKind::kGnssPosition);
+  return fixes.empty() ? of_kind(page, UpdateKind::kCarrierPhase) : fixes;
+}
+
+/// Of three degrees of freedom, to be held against the bounds of positions.
+double nis_of_three(const InnovationRecord& r) {
+  return 3.0 * r.nis / r.dof;
+}
+
 /// N, E, D of one kind of update with the filter's own bounds.
 report::Panel innovation_panel(const ProcessPage& page, const Records& records, const std::string& what,
                                const std::string& unit) {
@@ -63,8 +74,8 @@ report::Series minute_mean(const ProcessPage& page, const Records& records) {
   std::size_t first = 0;
   double sum = 0.0;
   for (std::size_t i = 0; i < records.size(); ++i) {
-    sum += records[i]->nis;
-    for (; records[i]->t - records[first]->t > kWindow; ++first) sum -= records[first]->nis;
+    sum += nis_of_three(*records[i]);
+    for (; records[i]->t - records[first]->t > kWindow; ++first) sum -= nis_of_three(*records[first]);
     mean.add(seconds_since_start(page, records[i]->t), sum / static_cast<double>(i - first + 1));
   }
   return mean.finish();
@@ -82,8 +93,8 @@ report::Panel nis_panel(const ProcessPage& page, const Records& positions, const
     if (records.empty()) return;
     report::Decimator nis({kMostDots});
     for (const InnovationRecord* r : records) {
-      nis.add(seconds_since_start(page, r->t), r->nis);
-      highest = std::max(highest, r->nis);
+      nis.add(seconds_since_start(page, r->t), nis_of_three(*r));
+      highest = std::max(highest, nis_of_three(*r));
     }
     report::add_points(plot, name, nis.finish(), dots).radius_px = 1.2;
     report::add_line(plot, name + ", mean over 60 s", minute_mean(page, records), mean).width_px = 2.0;
@@ -185,6 +196,7 @@ report::Panel update_panel(const ProcessPage& page) {
   add("zero velocity", report::Tone::kSbas, false, times_of(UpdateKind::kZeroVelocity, true));
   add("GNSS velocity", report::Tone::kPpp, false, times_of(UpdateKind::kGnssVelocity, true));
   add("GNSS position", report::Tone::kFixed, false, times_of(UpdateKind::kGnssPosition, true));
+  add("carrier phases", report::Tone::kFixed, false, times_of(UpdateKind::kCarrierPhase, true));
   plot.height_px = 70 + 26 * static_cast<int>(plot.y.ticks.size());
   report::shade(panel, outage_intervals(page));
   return panel;
@@ -227,7 +239,7 @@ std::string lead_of(const ProcessPage& page, const Records& positions) {
 }  // namespace
 
 std::optional<report::Section> innovation_section(const ProcessPage& page) {
-  const Records positions = of_kind(page, UpdateKind::kGnssPosition);
+  const Records positions = positions_of(page);
   const Records velocities = of_kind(page, UpdateKind::kGnssVelocity);
   if (page.result.innovations.empty()) return std::nullopt;
   report::Section section;

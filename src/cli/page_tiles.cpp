@@ -171,7 +171,7 @@ Tile longest_gap_tile(const ProcessPage& page) {
     last = t;
   };
   for (const estimate::InnovationRecord& r : page.result.innovations)
-    if (r.used && r.kind == estimate::UpdateKind::kGnssPosition) step(seconds_since_start(page, r.t));
+    if (r.used && estimate::is_position(r.kind)) step(seconds_since_start(page, r.t));
   step(page.result.end - page.result.start);
   double sigma = 0.0;
   const TrajectoryCurves::Curves& curves = page.curves.curves();

@@ -80,6 +80,7 @@ PpkResult run_ppk(const PpkConfig& config, const std::function<void(double)>& pr
   result.base_from = known.from;
   if (config.antex) add_antennas(*config.antex, rover, base, options.differences, result.events);
   result.solution = carrier::solve_ppk(rover, base, orbits, known.at, options, progress);
+  result.options = std::move(options);
   result.fixes = carrier::to_fixes(result.solution, config.rover.string());
   for (const record::Events& events : {rover.events, base.events, navigation.events, broadcast.events(), result.fixes.events})
     append(events, result.events);

@@ -10,6 +10,7 @@ namespace coast::cli {
 
 struct PpkResult {
   carrier::PpkSolution solution;
+  carrier::PpkOptions options;                         ///< that it was solved with
   record::GnssRecording fixes;                         ///< of it, as the filter takes them
   Eigen::Vector3d r_base_e = Eigen::Vector3d::Zero();  ///< its antenna, ECEF, m; of the first epoch where it moves
   std::string base_from;                               ///< where that comes from, in words

@@ -140,7 +140,7 @@ std::vector<study::Outage> ProcessRun::outages() const {
       throw InputError({config_.file.string(), 0, fmt::format("an outage starts at {:.3f} s", outage.start_s),
                         fmt::format("a time within the mission, {:.3f} to {:.3f} s", result_.start.sow(), result_.end.sow()),
                         ""});
-    outages.push_back({start, outage.duration_s});
+    outages.push_back({start, outage.duration_s, outage.satellites_left});
   }
   return outages;
 }
@@ -241,9 +241,9 @@ void ProcessRun::count_innovations() {
   const double gate = probability > 0.0 ? std::sqrt(noise::chi2_upper_quantile(3, probability)) : 0.0;
   std::vector<double> blind;
   for (const estimate::InnovationRecord& r : result_.innovations) {
-    if (r.kind != estimate::UpdateKind::kGnssPosition) continue;
+    if (!estimate::is_position(r.kind)) continue;
     ++(r.used ? result_.gnss_used : result_.gnss_rejected);
-    if (gate > 0.0) blind.push_back(r.largest_sd * gate);
+    if (gate > 0.0 && r.largest_sd > 0.0) blind.push_back(r.largest_sd * gate);
   }
   if (!blind.empty()) {
     std::nth_element(blind.begin(), blind.begin() + static_cast<std::ptrdiff_t>(blind.size() / 2), blind.end());

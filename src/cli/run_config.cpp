@@ -104,15 +104,25 @@ void read_vehicle(const Node& root, study::Setup& setup) {
   setup.filter.knot_interval_s = std::min(setup.filter.knot_interval_s, constraints.interval_s);
 }
 
+int satellites_left(const Node& outage, const RunConfig& run) {
+  const int left = static_cast<int>(outage.number_within("satellites", 0.0, 0.0, 100.0));
+  if (left > 0 && !run.tight)
+    throw outage.at("satellites")
+        .error("a partial outage of a loosely coupled run", "gnss: {coupling: tight, ..}",
+               "Fixes need four satellites; only observations themselves help with fewer.");
+  return left;
+}
+
 void read_outages(const Node& root, RunConfig& run) {
   const auto outages = root.find("outages");
   if (!outages) return;
   if (outages->is_map()) {
     run.sweep = sweep_from(*outages);
+    run.sweep->satellites_left = satellites_left(*outages, run);
     return;
   }
   for (const Node& item : outages->items()) {
-    OutageSeconds outage{item.at("start_s").number(), item.at("duration_s").number()};
+    OutageSeconds outage{item.at("start_s").number(), item.at("duration_s").number(), satellites_left(item, run)};
     if (!(outage.duration_s > 0.0)) throw item.at("duration_s").error("a duration of zero or less", "seconds above zero");
     run.outages.push_back(outage);
   }
@@ -157,10 +167,18 @@ void read_gnss(const Node& gnss, RunConfig& run, estimate::NoiseFitChoice& choic
     run.ppk = PpkConfig::from(*ppk);
   else
     run.gnss = io::GnssFileOptions::from(gnss);
+  run.tight = gnss.choice("coupling", {"loose", "tight"}, 0) == 1;
+  if (run.tight && !run.ppk)
+    throw gnss.at("coupling")
+        .error("tight coupling of positions", "gnss: {ppk: ..}",
+               "Tight coupling takes the observations of a rover and a base.");
   run.setup.time_offset_s = gnss.number_within("time_offset_s", 0.0, -100.0, 100.0);
   run.setup.filter.auxiliary.time_offset_sd_s = gnss.number_within("time_offset_sd_s", 0.0, 0.0, 10.0);
   run.setup.filter.use_gnss_velocity = gnss.flag("use_velocity", true);
   read_gnss_noise(gnss, run.setup, choice);
+  if (run.tight && choice.gnss_scale)
+    throw gnss.at("noise").error("noise of fixes that a tightly coupled run does not use", "no `noise` here",
+                                 "The noise of the observations is estimated by `ppk`.");
 }
 
 }  // namespace

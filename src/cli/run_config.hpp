@@ -31,6 +31,7 @@ struct GivenStart {
 struct OutageSeconds {
   double start_s = 0.0;  ///< seconds of week
   double duration_s = 0.0;
+  int satellites_left = 0;
 };
 
 struct OutputOptions {
@@ -45,6 +46,7 @@ struct RunConfig {
   io::ImuFileOptions imu;
   io::GnssFileOptions gnss;
   std::optional<PpkConfig> ppk;  ///< in place of a file of positions
+  bool tight = false;            ///< its observations, in place of its positions, go into the filter
   std::optional<io::ReferenceFileOptions> reference;
   Eigen::Vector3d reference_lever_arm_b = Eigen::Vector3d::Zero();
   study::Setup setup;

@@ -93,7 +93,7 @@ NisSummary nis_of(const std::vector<estimate::InnovationRecord>& innovations) {
   double dof = 0.0;
   std::optional<geo::GpsTime> last;
   for (const estimate::InnovationRecord& r : innovations) {
-    if (!r.used || (r.kind != estimate::UpdateKind::kGnssPosition && r.kind != estimate::UpdateKind::kGnssVelocity)) continue;
+    if (!r.used || !(estimate::is_position(r.kind) || r.kind == estimate::UpdateKind::kGnssVelocity)) continue;
     if (!last || *last != r.t) ++s.epochs;
     last = r.t;
     nis += r.nis;

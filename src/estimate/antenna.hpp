@@ -14,6 +14,15 @@ struct Antenna {
 };
 [[nodiscard]] Antenna antenna(const FilterState& state, const UpdateContext& context);
 
+/// Position or velocity of the antenna as predicted, and its derivative by the errors.
+struct AntennaPrediction {
+  Eigen::Vector3d value_e;
+  Eigen::MatrixXd H;  ///< 3 x n
+};
+/// Where the antenna is when a fix with the filter's time is valid: an estimated time offset moves it along.
+[[nodiscard]] AntennaPrediction antenna_position(const FilterState& state, const UpdateContext& context);
+[[nodiscard]] AntennaPrediction antenna_velocity(const FilterState& state, const UpdateContext& context);
+
 /// H += factor * d(v_ea_e)/d(error), v_ea = v_eb + C (omega x l).
 void add_antenna_velocity(const Antenna& antenna, const UpdateContext& context, double factor, Eigen::MatrixXd& H);
 

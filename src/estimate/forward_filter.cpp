@@ -21,8 +21,17 @@ ins::RawIncrement increment_from(const record::ImuRecording& imu, std::size_t in
   return raw;
 }
 
+namespace {
+
+AuxiliaryStates with_slots(AuxiliaryStates auxiliary, const CarrierObservations* carrier) {
+  if (carrier != nullptr) auxiliary.carrier_slots = static_cast<int>(carrier->most_unknowns);
+  return auxiliary;
+}
+
+}  // namespace
+
 ForwardFilter::ForwardFilter(const Mission& mission, const noise::ImuErrorModel& model, const FilterOptions& options)
-    : mission_(mission), options_(options), layout_(model, mission.C_s_b, options.auxiliary) {
+    : mission_(mission), options_(options), layout_(model, mission.C_s_b, with_slots(options.auxiliary, mission.carrier)) {
   if (!(options.knot_interval_s > 0.0)) throw std::invalid_argument("FilterOptions::knot_interval_s must be above zero");
   // The closed form that carries driving noise into the navigation states within an interval wants it short.
   knot_interval_ = std::min(options.knot_interval_s, std::max(0.2 * layout_.shortest_time(), 2.0 / mission.imu.rate_hz));

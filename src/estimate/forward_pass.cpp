@@ -1,9 +1,12 @@
 #include "forward_pass.hpp"
+#include "antenna.hpp"
 
 #include <fmt/format.h>
 
 #include <Eigen/Eigenvalues>
+#include <algorithm>
 #include <cmath>
+#include <functional>
 
 #include "coast/geo/earth.hpp"
 #include "coast/noise/chi_square.hpp"
@@ -16,6 +19,15 @@ namespace {
 // What is not known of the motion while IMU samples are missing: constant errors of the bridged rate and specific force.
 constexpr double kGapRateSd = 0.3;   // rad/s
 constexpr double kGapForceSd = 3.0;  // m/s^2
+
+/// What is left of an epoch where only the highest satellites are seen.
+carrier::DifferenceEpoch highest(carrier::DifferenceEpoch epoch, std::size_t satellites) {
+  std::ranges::sort(epoch.satellites, std::greater{}, &carrier::SatelliteDifference::base_elevation);
+  if (epoch.satellites.size() > satellites)
+    epoch.satellites.erase(epoch.satellites.begin() + static_cast<std::ptrdiff_t>(satellites), epoch.satellites.end());
+  epoch.alone.reset();
+  return epoch;
+}
 
 }  // namespace
 
@@ -51,6 +63,7 @@ ForwardPass::ForwardPass(const Mission& mission, const StateLayout& layout, cons
       knot_interval_(knot_interval),
       navigator_(layout, mission.increments, mission.earth_rate),
       transition_(layout, mission.earth_rate) {
+  if (mission.carrier != nullptr) tight_.emplace(*mission.carrier, layout, mission.earth_rate < 0.0);
   gate_.fill(std::numeric_limits<double>::infinity());
   if (options.gate_probability > 0.0)
     for (int dof = 1; dof <= 3; ++dof)
@@ -59,6 +72,7 @@ ForwardPass::ForwardPass(const Mission& mission, const StateLayout& layout, cons
 
 void ForwardPass::start(const FilterState& state) {
   begin({state.nav, state.x, {}}, state.P);
+  if (tight_) tight_->begin(state_);
   const auto& samples = mission_.imu.samples;
   const auto after = std::upper_bound(samples.begin(), samples.end(), state.nav.t + kTimeTolerance,
                                       [](geo::GpsTime t, const record::ImuSample& s) { return t < s.t; });
@@ -77,6 +91,7 @@ void ForwardPass::start(const FilterState& state) {
 
 void ForwardPass::start(const Knot& knot) {
   begin(knot.post, knot.P_post);
+  if (tight_) tight_->begin(knot);
   skip_fixes(knot.post.nav.t + 2.0 * kTimeTolerance);  // those of the knot itself are used
   next_sample_ = knot.next_sample;
   remainder_ = knot.remainder;
@@ -95,16 +110,21 @@ void ForwardPass::begin(const Navigator::Start& start, const Eigen::MatrixXd& P)
 }
 
 void ForwardPass::skip_fixes(geo::GpsTime before) {
-  while (next_fix_ < mission_.gnss.fixes.size() && fix_time(next_fix_) < before) ++next_fix_;
+  while (next_fix_ < gnss_epochs() && gnss_time(next_fix_) < before) ++next_fix_;
 }
 
-geo::GpsTime ForwardPass::fix_time(std::size_t index) const {
-  return mission_.gnss.fixes[index].t - mission_.time_offset_s;
+std::size_t ForwardPass::gnss_epochs() const {
+  return mission_.carrier != nullptr ? mission_.carrier->epochs.size() : mission_.gnss.fixes.size();
+}
+
+geo::GpsTime ForwardPass::gnss_time(std::size_t index) const {
+  const geo::GpsTime t = mission_.carrier != nullptr ? mission_.carrier->epochs[index].t : mission_.gnss.fixes[index].t;
+  return t - mission_.time_offset_s;
 }
 
 geo::GpsTime ForwardPass::next_knot_time(geo::GpsTime end) const {
   geo::GpsTime t = std::min(end, state_.nav.t + knot_interval_);
-  if (next_fix_ < mission_.gnss.fixes.size()) t = std::min(t, fix_time(next_fix_));
+  if (next_fix_ < gnss_epochs()) t = std::min(t, gnss_time(next_fix_));
   return t;
 }
 
@@ -187,10 +207,10 @@ void ForwardPass::knot() {
   if (have_knot_) close_interval();
   have_knot_ = true;
   knot_.updates.clear();
+  knot_.slot_factors.resize(0);
   if (outputs_.at_knots) outputs_.at_knots(state_);
   C_n_e_ = geo::C_n_e(geo::geodetic_from_ecef(state_.nav.r_eb_e));  // updates move the point by metres, this by 1e-6
-  const auto& fixes = mission_.gnss.fixes;
-  while (next_fix_ < fixes.size() && fix_time(next_fix_) - state_.nav.t <= kTimeTolerance) gnss_updates(fixes[next_fix_++]);
+  while (next_fix_ < gnss_epochs() && gnss_time(next_fix_) - state_.nav.t <= kTimeTolerance) take_gnss(next_fix_++);
   vehicle_updates();
   navigator_.correct(state_.nav, state_.x);
   if (outputs_.epochs) cov_at_start_ = nav_covariance_n(state_.P.topLeftCorner<kNav, kNav>(), state_.nav.r_eb_e);
@@ -220,9 +240,38 @@ UpdateContext ForwardPass::context() const {
   return {layout_, mission_.lever_arm_b, navigator_.omega_eb_b(next), C_n_e_};
 }
 
+void ForwardPass::take_gnss(std::size_t index) {
+  const geo::GpsTime t = gnss_time(index) + mission_.time_offset_s;
+  const auto withheld = std::ranges::find_if(options_.withheld, [t](const Withheld& span) { return span.contains(t); });
+  const bool seen = withheld == options_.withheld.end();
+  if (mission_.carrier == nullptr) {
+    if (seen) gnss_updates(mission_.gnss.fixes[index]);
+    return;
+  }
+  const carrier::DifferenceEpoch& epoch = *mission_.carrier->epochs[index].differences;
+  if (seen)
+    carrier_updates(epoch);
+  else if (withheld->satellites_left > 0)
+    carrier_updates(highest(epoch, static_cast<std::size_t>(withheld->satellites_left)));
+}
+
+void ForwardPass::carrier_updates(const carrier::DifferenceEpoch& epoch) {
+  const UpdateContext here = context();
+  TightCoupling::Outcome outcome = tight_->update(epoch, here, state_, knot_);
+  if (!outcome.contradicted) {
+    gate_state_ = GateState::kClosed;
+  } else if (epoch.alone && refuse()) {
+    admit_doubt(epoch.alone->r_e - antenna_position(state_, here).value_e);
+    outcome = tight_->update(epoch, here, state_, knot_);
+  }
+  result_.log_likelihood += outcome.log_likelihood;
+  if (outcome.innovation) {
+    last_used_ = state_.nav.t;
+    result_.innovations.push_back(*outcome.innovation);
+  }
+}
+
 void ForwardPass::gnss_updates(const record::GnssFix& fix) {
-  for (const TimeSpan& span : options_.withheld)
-    if (span.contains(fix.t)) return;
   record::GnssFix scaled = fix;
   const GnssScale& s = options_.gnss_scale;
   const Eigen::Vector3d scale(s.horizontal, s.horizontal, s.vertical);
@@ -272,6 +321,10 @@ bool ForwardPass::gate_refuses(const Linearised& measurement, double nis) {
     gate_state_ = GateState::kClosed;
     return false;
   }
+  return !refuse();
+}
+
+bool ForwardPass::refuse() {
   if (gate_state_ == GateState::kClosed) {
     gate_state_ = GateState::kRefusing;
     first_refused_ = state_.nav.t;
@@ -283,7 +336,7 @@ bool ForwardPass::gate_refuses(const Linearised& measurement, double nis) {
                                           state_.nav.t - first_refused_),
                               state_.nav.t, 1});
   }
-  return gate_state_ == GateState::kRefusing;
+  return gate_state_ == GateState::kOpen;
 }
 
 // Behind an outage the filter is not confident: its drift was larger than it thought, and everything that drifted along has to

@@ -6,6 +6,7 @@
 
 #include "coast/estimate/forward_filter.hpp"
 #include "coast/estimate/transition.hpp"
+#include "tight_coupling.hpp"
 
 namespace coast::estimate {
 
@@ -29,7 +30,10 @@ class ForwardPass {
   void begin(const Navigator::Start& start, const Eigen::MatrixXd& P);
   void skip_fixes(geo::GpsTime before);
   [[nodiscard]] geo::GpsTime next_knot_time(geo::GpsTime end) const;
-  [[nodiscard]] geo::GpsTime fix_time(std::size_t index) const;
+  [[nodiscard]] std::size_t gnss_epochs() const;
+  [[nodiscard]] geo::GpsTime gnss_time(std::size_t index) const;
+  void take_gnss(std::size_t index);
+  void carrier_updates(const carrier::DifferenceEpoch& epoch);
   [[nodiscard]] double missing_share(double span) const;
   void add_gap_noise();
   void propagate(const ins::RawIncrement& raw);
@@ -40,6 +44,8 @@ class ForwardPass {
   void vehicle_updates();
   void try_update(const Linearised& measurement, record::FixQuality quality);
   [[nodiscard]] bool gate_refuses(const Linearised& measurement, double nis);
+  /// Of positions. @return whether the filter has refused for so long that it is wrong itself
+  bool refuse();
   [[nodiscard]] bool coasting() const;
   void admit_doubt(const Eigen::Vector3d& nu);
   void record_innovation(const Linearised& measurement, const Innovation& innovation, bool used, record::FixQuality quality);
@@ -64,6 +70,7 @@ class ForwardPass {
   std::size_t next_sample_ = 0;
   ins::RawIncrement remainder_;
   std::size_t next_fix_ = 0;
+  std::optional<TightCoupling> tight_;
   geo::GpsTime last_constraint_;
   geo::GpsTime first_refused_;
   geo::GpsTime last_used_;  ///< position fix

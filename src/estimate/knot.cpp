@@ -20,6 +20,13 @@ class Packer {
     Eigen::Map<Eigen::MatrixXd>(out_, m.rows(), m.cols()) = m;
     out_ += m.size();
   }
+  void unknown(const carrier::Unknown& u) {
+    integer(static_cast<std::int64_t>(u.kind));
+    integer(static_cast<std::int64_t>(u.satellite.system));
+    integer(u.satellite.number);
+    integer(u.band);
+    integer(u.arc);
+  }
   void symmetric(const Eigen::MatrixXd& m) {  // upper triangle, column by column
     for (Eigen::Index j = 0; j < m.cols(); ++j) out_ = std::copy_n(m.col(j).data(), j + 1, out_);
   }
@@ -52,6 +59,15 @@ class Unpacker {
     m.triangularView<Eigen::StrictlyLower>() = m.transpose();
     return m;
   }
+  carrier::Unknown unknown() {
+    carrier::Unknown u;
+    u.kind = static_cast<carrier::Unknown::Kind>(integer());
+    u.satellite.system = static_cast<record::SatelliteSystem>(integer());
+    u.satellite.number = static_cast<std::uint8_t>(integer());
+    u.band = static_cast<char>(integer());
+    u.arc = static_cast<int>(integer());
+    return u;
+  }
   ins::RawIncrement increment() {
     ins::RawIncrement raw;
     raw.dt = real();
@@ -71,6 +87,7 @@ std::size_t nominal_size(Eigen::Index n) {
 std::size_t packed_size(const Knot& knot) {
   const auto n = knot.post.x.size();
   Eigen::Index size = n * (n + 1) / 2 + 1 + knot.Phi_n.size() + 1;
+  size += 2 + 5 * static_cast<Eigen::Index>(knot.slots.size()) + knot.slot_factors.size();
   for (const AppliedUpdate& u : knot.updates) size += 2 + u.H.size() + u.K.size() + u.S_inv.size() + u.y.size();
   return nominal_size(n) + static_cast<std::size_t>(size);
 }
@@ -114,6 +131,10 @@ void KnotStore::append(const Knot& knot) {
   pack.symmetric(knot.P_post);
   pack.integer(knot.Phi_n.cols());
   pack.matrix(knot.Phi_n);
+  pack.integer(static_cast<std::int64_t>(knot.slots.size()));
+  for (const carrier::Unknown& unknown : knot.slots) pack.unknown(unknown);
+  pack.integer(knot.slot_factors.size());
+  pack.matrix(knot.slot_factors);
   pack.integer(static_cast<std::int64_t>(knot.updates.size()));
   for (const AppliedUpdate& update : knot.updates) {
     pack.integer(static_cast<std::int64_t>(update.kind));
@@ -154,6 +175,10 @@ Knot KnotStore::at(std::size_t index) const {
   knot.P_post = unpack.symmetric(n);
   const Eigen::Index columns = unpack.integer();
   knot.Phi_n = unpack.matrix(kNav, columns);
+  knot.slots.resize(static_cast<std::size_t>(unpack.integer()));
+  for (carrier::Unknown& unknown : knot.slots) unknown = unpack.unknown();
+  const Eigen::Index factors = unpack.integer();
+  knot.slot_factors = unpack.matrix(factors, 1);
   knot.updates.resize(static_cast<std::size_t>(unpack.integer()));
   for (AppliedUpdate& update : knot.updates) {
     update.kind = static_cast<UpdateKind>(unpack.integer());

@@ -51,6 +51,13 @@ class BackwardRecursion {
     N_.noalias() += u.H.transpose() * (u.S_inv * u.H);
   }
 
+  void through_slot_changes(const Eigen::VectorXd& factors) {
+    const auto slots = factors.size();
+    r_.tail(slots).array() *= factors.array();
+    N_.bottomRows(slots).array().colwise() *= factors.array();
+    N_.rightCols(slots).array().rowwise() *= factors.transpose().array();
+  }
+
   [[nodiscard]] SmoothedKnot smoothed(const Knot& knot, bool with_states) const {
     SmoothedKnot s;
     s.nav = knot.post.nav;
@@ -104,6 +111,7 @@ std::vector<SmoothedKnot> smooth(const KnotStore& knots, const StateLayout& layo
     if (!smoothed[i].nav.r_eb_e.allFinite())
       throw NumericalError("smoothed state is not finite", geo::to_string(knot.post.nav.t), "the forward filter has diverged");
     for (auto update = knot.updates.rbegin(); update != knot.updates.rend(); ++update) backward.through_update(*update);
+    backward.through_slot_changes(knot.slot_factors);
     if (progress && i % 256 == 0) progress(1.0 - static_cast<double>(i) / static_cast<double>(knots.size()));
   }
   return smoothed;

@@ -53,6 +53,8 @@ StateLayout::StateLayout(const noise::ImuErrorModel& model, const Eigen::Matrix3
     gnss_error_ = add_auxiliary("gnss_error_horizontal", gnss.horizontal_m, 1.0 / gnss.time_s, 2);
     add_auxiliary("gnss_error_vertical", gnss.vertical_m, 1.0 / gnss.time_s, 1);
   }
+  carrier_slots_ = size_;
+  size_ += auxiliary.carrier_slots;
 }
 
 void StateLayout::add_sensor(const noise::ImuErrorModel& model, noise::Sensor sensor, const Eigen::Matrix3d& C_s_b) {

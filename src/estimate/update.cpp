@@ -20,6 +20,8 @@ std::string_view name(UpdateKind kind) {
       return "zero_velocity";
     case UpdateKind::kNonHolonomic:
       return "non_holonomic";
+    case UpdateKind::kCarrierPhase:
+      return "carrier_phase";
   }
   return "";
 }
@@ -72,8 +74,10 @@ AppliedUpdate apply(const Linearised& measurement, const Innovation& innovation,
   update.K.noalias() = innovation.PHt.lazyProduct(update.S_inv);
   if (m == 3)
     correct_covariance<3>(innovation.PHt, update.K, innovation.S, state.P);
-  else
+  else if (m == 2)
     correct_covariance<2>(innovation.PHt, update.K, innovation.S, state.P);
+  else
+    correct_covariance<1>(innovation.PHt, update.K, innovation.S, state.P);
   remove_error(update.K * update.y, state.nav, state.x);
   return update;
 }

@@ -79,6 +79,7 @@ PreparedMission::PreparedMission(record::ImuRecording imu, record::GnssRecording
     refine_start(progress);
     refine_antenna(progress);
   }
+  mission_->carrier = setup_.carrier.get();
 }
 
 // Noise comes first: with noise stated far too small neither the gate nor an offset means anything. The second fit starts

@@ -104,7 +104,7 @@ std::vector<Outage> outages_of(const OutageSweep& sweep, geo::GpsTime from, geo:
   for (const double duration : sweep.durations_s) {
     if (duration > 0.25 * (to - from)) continue;
     for (double start = sweep.first_s; start + duration < to - from; start += sweep.every_s)
-      outages.push_back({from + start, duration});
+      outages.push_back({from + start, duration, sweep.satellites_left});
   }
   return outages;
 }

@@ -19,6 +19,9 @@ ReversedRun::ReversedRun(const estimate::Mission& forward, const record::ImuReco
   for (const estimate::TimeSpan& span : forward.standstill)
     mission_.standstill.push_back({ins::mirrored(span.to, mirror), ins::mirrored(span.from, mirror)});
   std::ranges::reverse(mission_.standstill);
+  if (forward.carrier == nullptr) return;
+  carrier_ = estimate::reversed(*forward.carrier, mirror);
+  mission_.carrier = &*carrier_;
 }
 
 estimate::FilterState ReversedRun::mirrored(const estimate::FilterState& state, const estimate::StateLayout& layout) const {
@@ -40,8 +43,8 @@ estimate::FilterState ReversedRun::mirrored(const estimate::FilterState& state, 
 // A span has its beginning and not its end; mirrored it would have it the other way round.
 estimate::FilterOptions ReversedRun::mirrored(estimate::FilterOptions options) const {
   constexpr double kNext = 1e-9;  // s, the resolution of GpsTime
-  for (estimate::TimeSpan& span : options.withheld)
-    span = {ins::mirrored(span.to, mirror_) + kNext, ins::mirrored(span.from, mirror_) + kNext};
+  for (estimate::Withheld& span : options.withheld)
+    span = {ins::mirrored(span.to, mirror_) + kNext, ins::mirrored(span.from, mirror_) + kNext, span.satellites_left};
   return options;
 }
 

@@ -10,6 +10,8 @@ namespace coast::study {
 class ReversedRun {
  public:
   struct AlreadyReversed {};
+  ReversedRun(const ReversedRun&) = delete;
+  ReversedRun& operator=(const ReversedRun&) = delete;
   /// Reverses the recordings in place; they must outlive the run.
   ReversedRun(const estimate::Mission& forward, record::ImuRecording& imu, record::GnssRecording& gnss, geo::GpsTime mirror)
       : ReversedRun(forward, imu, gnss, mirror, AlreadyReversed{}) {
@@ -30,6 +32,7 @@ class ReversedRun {
  private:
   geo::GpsTime mirror_;
   estimate::Mission mission_;
+  std::optional<estimate::CarrierObservations> carrier_;
 };
 
 }  // namespace coast::study

@@ -27,10 +27,10 @@ class DoubleDifferencesTest : public testing::Test {
 
 /// Groups of rows that share a clock, by the rows' phase and band.
 std::vector<std::vector<Eigen::Index>> groups_of(const DoubleDifferences& dd, const DifferenceEpoch& epoch) {
-  std::map<std::tuple<bool, record::SatelliteSystem, char>, std::vector<Eigen::Index>> groups;
+  std::map<std::tuple<Observable, record::SatelliteSystem, char>, std::vector<Eigen::Index>> groups;
   for (std::size_t i = 0; i < dd.rows.size(); ++i) {
     const SatelliteDifference& s = epoch.satellites[dd.rows[i].satellite];
-    groups[{dd.rows[i].phase, s.satellite.system, s.bands[dd.rows[i].band].band}].push_back(static_cast<Eigen::Index>(i));
+    groups[{dd.rows[i].observable, s.satellite.system, s.bands[dd.rows[i].band].band}].push_back(static_cast<Eigen::Index>(i));
   }
   std::vector<std::vector<Eigen::Index>> all;
   for (const auto& [key, rows] : groups) all.push_back(rows);

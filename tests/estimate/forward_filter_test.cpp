@@ -87,7 +87,7 @@ TEST_F(ForwardFilterTest, KnotsInsideSamplesLeaveTheTrajectoryAlone) {
 
 TEST_F(ForwardFilterTest, WithheldFixesAreNotUsedAndCostAccuracy) {
   record();
-  const TimeSpan span{test::mission_start() + 20.0, test::mission_start() + 30.0};
+  const Withheld span{test::mission_start() + 20.0, test::mission_start() + 30.0};
   options_.withheld.push_back(span);
   double sd_at_end = 0.0;
   FilterOutputs outputs;

@@ -59,6 +59,8 @@ class Updates : public testing::TestWithParam<UpdateKind> {
         return zero_velocity(state, 0.01);
       case UpdateKind::kNonHolonomic:
         return non_holonomic(state, context, {.point_b = {-1.1, 0.3, 0.9}, .pitch = 0.1, .yaw = -0.2});
+      case UpdateKind::kCarrierPhase:
+        break;  // not of this form: tight_coupling_test.cpp
     }
     return {};
   }

@@ -189,7 +189,7 @@ class MultiPass : public testing::Test {
 
   simulate::Scenario scenario_;
   record::Trajectory truth_;
-  estimate::TimeSpan gap_{};
+  estimate::Withheld gap_{};
 };
 
 struct Delivered {

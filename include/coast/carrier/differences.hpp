@@ -18,6 +18,7 @@ struct BandDifference {
   double frequency = 0.0;  ///< Hz
   std::optional<double> code;
   std::optional<double> phase;
+  std::optional<double> rate;              ///< by Doppler, m/s; the rover's modelled_rate is left in it
   double rover_cn0 = 0.0, base_cn0 = 0.0;  ///< dB-Hz, 0 where unknown
   bool half_cycle = false;                 ///< the ambiguity may be half an integer
   int arc = 0;                             ///< of this satellite and band: another number, another ambiguity

@@ -18,6 +18,9 @@ struct FixingOptions {
   double ratio = 3.0;           ///< least second-best over best
   double success_rate = 0.99;   ///< least, of the integers that are fixed
   double elevation_mask = 0.0;  ///< rad: below, a satellite's ambiguities stay float
+  /// Integers that come out several epochs in a row become measurements of the ambiguities (fix and hold): more epochs are
+  /// fixed, and a wrong fix lasts.
+  bool hold = false;
 };
 
 /// How much noisier than the nominal sigmas phases and codes are. Nominal is a geodetic receiver in the open: 2 mm (1 +
@@ -29,6 +32,7 @@ struct NoiseScale {
   /// epoch of an ambiguity counts in full, each later one as this much less sure, so that n of them tell as much of it as n of
   /// a Gauss-Markov process do.
   double code_inflation = 1.0;
+  double rate = 1.0;  ///< of Doppler, against 2 cm/s at the zenith
 };
 
 /// What the air does differently above rover and base, as states beside position and ambiguities.
@@ -69,7 +73,7 @@ inline constexpr int kShortfalls = 10;
 struct SignalResidual {
   record::Satellite satellite;
   char band = '1';
-  bool phase = true;
+  bool phase = true;      ///< else code
   double residual = 0.0;  ///< m, with the float ambiguities or, where fixed, the integers
   double sd = 0.0;        ///< m, as the filter weighs it
   Direction direction;
@@ -98,7 +102,8 @@ struct PpkEpoch {
 };
 
 struct PpkSolution {
-  std::vector<PpkEpoch> epochs;  ///< every epoch of the rover
+  std::vector<PpkEpoch> epochs;              ///< every epoch of the rover
+  std::vector<DifferenceEpoch> differences;  ///< of the same epochs, as they were used
   SignalChoice signals;
   NoiseScale noise;
   AirStates air;

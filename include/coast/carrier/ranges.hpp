@@ -34,4 +34,9 @@ struct SignalPath {
 [[nodiscard]] SignalPath path_to(const SatelliteState& satellite, const Eigen::Vector3d& r_receiver_e,
                                  const geo::Geodetic& receiver, geo::GpsTime t, bool troposphere);
 
+/// Rate of the range to a satellite, with its clock's and the Earth's rotation (Sagnac), m/s: what the Doppler of a receiver
+/// whose clock does not drift shows.
+[[nodiscard]] double modelled_rate(const SatelliteState& satellite, const Eigen::Vector3d& r_receiver_e,
+                                   const Eigen::Vector3d& v_receiver_e);
+
 }  // namespace coast::carrier

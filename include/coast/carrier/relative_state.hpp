@@ -1,7 +1,8 @@
 #pragma once
-// The unknowns of a baseline with names, since satellites come and go. Private to the room.
+// The unknowns of a baseline with names, since satellites come and go.
 
 #include <Eigen/Core>
+#include <array>
 #include <compare>
 #include <vector>
 
@@ -10,19 +11,37 @@
 namespace coast::carrier {
 
 struct Unknown {
-  enum class Kind : std::uint8_t { kPosition, kZenithDelay, kIonosphere, kAmbiguity };
+  enum class Kind : std::uint8_t { kPosition, kVelocity, kZenithDelay, kIonosphere, kAmbiguity };
   Kind kind = Kind::kPosition;
   record::Satellite satellite;
-  char band = '0';
-  int arc = 0;  ///< of ambiguities
+  char band = '0';  ///< of ambiguities; x, y or z of the velocity
+  int arc = 0;      ///< of ambiguities
 
   auto operator<=>(const Unknown&) const = default;
 };
 
-/// Mean and covariance of a changing set of unknowns. The first three are the position.
+/// ECEF components, in the order that a state must have them.
+inline constexpr std::array kVelocityUnknowns{Unknown{Unknown::Kind::kVelocity, {}, 'x', 0},
+                                              Unknown{Unknown::Kind::kVelocity, {}, 'y', 0},
+                                              Unknown{Unknown::Kind::kVelocity, {}, 'z', 0}};
+
+/// What became of one unknown: x <- factor x + value, variance <- factor^2 variance + added. Without a factor whatever was
+/// known of it is forgotten.
+struct StateChange {
+  Unknown unknown;
+  double factor = 1.0;
+  double value = 0.0;
+  double added = 0.0;
+  bool gone = false;  ///< it is no longer carried
+};
+
+/// Mean and covariance of a changing set of unknowns. The first three are the position, ECEF, m; ambiguities are in cycles,
+/// delays in m, velocities in m/s.
 class RelativeState {
  public:
   RelativeState();
+  /// @param named  the unknowns behind the position, in order
+  RelativeState(const std::vector<Unknown>& named, Eigen::VectorXd mean, Eigen::MatrixXd covariance);
 
   Eigen::VectorXd x;
   Eigen::MatrixXd P;
@@ -34,6 +53,8 @@ class RelativeState {
   Eigen::Index add(const Unknown& unknown, double value, double variance);
   /// What has been learnt of it is forgotten.
   void reset(Eigen::Index i, double value, double variance);
+  /// x <- factor x, with driving noise.
+  void evolve(Eigen::Index i, double factor, double added);
   template <class Predicate>
   void remove_if(const Predicate& gone) {
     std::vector<Eigen::Index> kept;
@@ -41,10 +62,14 @@ class RelativeState {
       if (!gone(unknowns_[static_cast<std::size_t>(i)])) kept.push_back(i);
     keep(kept);
   }
+  /// Of named unknowns, in order, since the last call: whoever carries them elsewhere can follow.
+  [[nodiscard]] std::vector<StateChange> take_changes();
 
  private:
   void keep(const std::vector<Eigen::Index>& kept);
+  void note(Eigen::Index i, double factor, double value, double added);
   std::vector<Unknown> unknowns_;
+  std::vector<StateChange> changes_;
 };
 
 }  // namespace coast::carrier

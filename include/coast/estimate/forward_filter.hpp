@@ -5,6 +5,7 @@
 #include <optional>
 #include <vector>
 
+#include "coast/estimate/carrier_observations.hpp"
 #include "coast/estimate/knot.hpp"
 #include "coast/estimate/state_layout.hpp"
 #include "coast/estimate/update.hpp"
@@ -22,6 +23,14 @@ struct TimeSpan {
   [[nodiscard]] bool contains(geo::GpsTime t) const { return from <= t && t < to; }
 };
 
+/// GNSS that the filter does not see. A tightly coupled one sees the highest satellites if some are left.
+struct Withheld {
+  geo::GpsTime from;
+  geo::GpsTime to;
+  int satellites_left = 0;
+  [[nodiscard]] bool contains(geo::GpsTime t) const { return from <= t && t < to; }
+};
+
 /// What is filtered. The recordings must outlive the filter.
 struct Mission {
   const record::ImuRecording& imu;  ///< body axes
@@ -34,6 +43,8 @@ struct Mission {
   double earth_rate = geo::kEarthRate;    ///< negative for a recording run backwards
   /// Where known drifts are zero; where absent, the beginning of the recording.
   std::optional<geo::GpsTime> first_epoch = {};
+  /// Tight coupling: these are used in place of the fixes. Must outlive the filter.
+  const CarrierObservations* carrier = nullptr;
 };
 
 /// Factors on the stated GNSS standard deviations.
@@ -59,10 +70,11 @@ struct FilterOptions {
   double gate_patience_s = 3.0;    ///< fixes refused for longer are taken: it is the filter that is wrong
   double knot_interval_s = 0.5;    ///< longest interval between knots
   VehicleConstraints vehicle;
-  std::vector<TimeSpan> withheld;  ///< GNSS of these spans is not used
+  std::vector<Withheld> withheld;
 };
 
-/// One innovation, resolved for people: GNSS in N, E, D; non-holonomic as lateral, vertical in the first two.
+/// One innovation, resolved for people: GNSS in N, E, D; non-holonomic as lateral, vertical in the first two; of carrier phases
+/// what they move the antenna by.
 struct InnovationRecord {
   geo::GpsTime t;
   UpdateKind kind = UpdateKind::kGnssPosition;

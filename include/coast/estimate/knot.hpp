@@ -9,6 +9,7 @@
 #include <optional>
 #include <vector>
 
+#include "coast/carrier/relative_state.hpp"
 #include "coast/estimate/navigator.hpp"
 #include "coast/estimate/update.hpp"
 
@@ -19,6 +20,10 @@ struct Knot {
   Navigator::Start post;
   Eigen::MatrixXd P_post;
   std::vector<AppliedUpdate> updates;  ///< in the order applied
+  /// Names of the carrier slots; a position stands for a free one.
+  std::vector<carrier::Unknown> slots;
+  /// What the slots were multiplied with before the updates: 0 where an unknown began or ended; empty: nothing.
+  Eigen::VectorXd slot_factors;
   // Where in the recording the knot stands: sample `next_sample` is the first not fully used, `remainder` what is left of it.
   std::size_t next_sample = 0;
   ins::RawIncrement remainder;  ///< dt = 0: the sample is untouched

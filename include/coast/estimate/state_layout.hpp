@@ -29,6 +29,8 @@ struct AuxiliaryStates {
   double time_offset_sd_s = 0.0;  ///< prior sd of the GNSS time offset
   double mounting_sd = 0.0;       ///< prior sd of the vehicle's yaw and pitch against the body, rad
   CorrelatedGnss correlated_gnss;
+  /// Room for unknowns of carrier-phase observations, which come and go: constant states without prior, nameless here.
+  int carrier_slots = 0;
 };
 
 class StateLayout {
@@ -60,6 +62,8 @@ class StateLayout {
   [[nodiscard]] std::optional<int> time_offset() const { return time_offset_; }  ///< 1 state, s
   [[nodiscard]] std::optional<int> mounting() const { return mounting_; }        ///< pitch, yaw, rad
   [[nodiscard]] std::optional<int> gnss_error() const { return gnss_error_; }    ///< 3 states, N, E, D
+  /// The carrier slots are the last states, [carrier_slots(), size()).
+  [[nodiscard]] int carrier_slots() const { return carrier_slots_; }
   /// White-noise densities in body axes, [signal]^2/Hz.
   [[nodiscard]] const Eigen::Matrix3d& gyro_density_b() const { return gyro_density_b_; }
   [[nodiscard]] const Eigen::Matrix3d& accel_density_b() const { return accel_density_b_; }
@@ -88,6 +92,7 @@ class StateLayout {
   std::optional<int> time_offset_;
   std::optional<int> mounting_;
   std::optional<int> gnss_error_;
+  int carrier_slots_ = kNav;
   Eigen::Matrix3d gyro_density_b_ = Eigen::Matrix3d::Zero();
   Eigen::Matrix3d accel_density_b_ = Eigen::Matrix3d::Zero();
   double shortest_time_ = 0.0;

@@ -11,15 +11,19 @@
 
 namespace coast::estimate {
 
-enum class UpdateKind { kGnssPosition, kGnssVelocity, kZeroVelocity, kNonHolonomic };
+enum class UpdateKind { kGnssPosition, kGnssVelocity, kZeroVelocity, kNonHolonomic, kCarrierPhase };
 [[nodiscard]] std::string_view name(UpdateKind kind);
+/// Whether it ties the position down.
+[[nodiscard]] constexpr bool is_position(UpdateKind kind) {
+  return kind == UpdateKind::kGnssPosition || kind == UpdateKind::kCarrierPhase;
+}
 
 /// No measurement has more components than this, so that what is m x m needs no heap.
 inline constexpr int kMaxComponents = 3;
 using Components = Eigen::Matrix<double, Eigen::Dynamic, 1, Eigen::ColMajor, kMaxComponents, 1>;
 using ComponentCov = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::ColMajor, kMaxComponents, kMaxComponents>;
 
-/// A linearised measurement of m components, 2 or 3.
+/// A linearised measurement of m components, 1 to 3.
 struct Linearised {
   UpdateKind kind = UpdateKind::kGnssPosition;
   Components nu;      ///< m

@@ -29,6 +29,8 @@ struct Setup {
   /// Where the first studied outage begins: the start is refined with fixes before it alone, or the outage would look too good.
   std::optional<geo::GpsTime> refine_before;
   std::optional<estimate::NoiseFitChoice> noise_fit;
+  /// Tight coupling, of the prepared mission alone: it is prepared with the fixes.
+  std::shared_ptr<const estimate::CarrierObservations> carrier;
 };
 
 /// A mission in body axes, aligned. Owns its recordings.

@@ -10,11 +10,12 @@
 
 namespace coast::study {
 
-/// Fixes with start <= t < start + duration are withheld.
+/// GNSS with start <= t < start + duration is withheld, but for some satellites where the outage is partial.
 struct Outage {
   geo::GpsTime start;
   double duration_s = 0.0;
-  [[nodiscard]] estimate::TimeSpan span() const { return {start, start + duration_s}; }
+  int satellites_left = 0;
+  [[nodiscard]] estimate::Withheld span() const { return {start, start + duration_s, satellites_left}; }
 };
 
 /// Errors of one solution inside one outage.
@@ -78,6 +79,7 @@ struct OutageSweep {
   double every_s = 60.0;
   double first_s = 60.0;
   std::vector<double> durations_s;
+  int satellites_left = 0;
 };
 [[nodiscard]] std::vector<Outage> outages_of(const OutageSweep& sweep, geo::GpsTime from, geo::GpsTime to);
 
