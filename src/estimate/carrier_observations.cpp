@@ -38,7 +38,9 @@ class ReceiverClock {
 CarrierObservations carrier_observations(carrier::PpkSolution solution, const carrier::PpkOptions& options) {
   CarrierObservations observations;
   observations.options = options;
-  observations.options.air = solution.air;
+  // Over minutes the smoother averages phases to less than what the air does over the shortest baselines.
+  const bool air = options.differences.air.troposphere;
+  observations.options.air = carrier::AirStates{air, air};
   observations.options.noise = solution.noise;
   observations.interval_s = solution.interval_s;
   observations.most_unknowns = carrier::most_unknowns(solution.differences, observations.options, solution.interval_s);

@@ -67,16 +67,24 @@ Eigen::MatrixXd TightCoupling::over_states(const Eigen::MatrixXd& H, const std::
 
 carrier::RelativeState TightCoupling::prior(const UpdateContext& context, const FilterState& state) const {
   std::vector<Unknown> named(carrier::kVelocityUnknowns.begin(), carrier::kVelocityUnknowns.end());
-  for (const Unknown& unknown : slots_)
-    if (unknown != kFree) named.push_back(unknown);
-  const auto size = 3 + static_cast<Eigen::Index>(named.size());
-  std::vector<Unknown> columns(3);
-  columns.insert(columns.end(), named.begin(), named.end());
-  const Eigen::MatrixXd M = over_states(Eigen::MatrixXd::Identity(size, size), columns, context, state);
-  Eigen::VectorXd x = M * state.x;
-  x.head<3>() = antenna_position(state, context).value_e;
-  x.segment<3>(3) = direction_ * antenna_velocity(state, context).value_e;
-  Eigen::MatrixXd P = M * state.P * M.transpose();
+  std::vector<Eigen::Index> at;
+  for (std::size_t slot = 0; slot < slots_.size(); ++slot) {
+    if (slots_[slot] == kFree) continue;
+    named.push_back(slots_[slot]);
+    at.push_back(layout_.carrier_slots() + static_cast<Eigen::Index>(slot));
+  }
+  const AntennaPrediction position = antenna_position(state, context), velocity = antenna_velocity(state, context);
+  Eigen::MatrixXd A(kMoving, layout_.size());
+  A << position.H, direction_ * velocity.H;
+  const auto used = static_cast<Eigen::Index>(at.size());
+  Eigen::VectorXd x(kMoving + used);
+  x << position.value_e, direction_ * velocity.value_e, state.x(at);
+  Eigen::MatrixXd P(kMoving + used, kMoving + used);
+  const Eigen::MatrixXd AP = A * state.P;
+  P.topLeftCorner(kMoving, kMoving) = AP * A.transpose();
+  P.topRightCorner(kMoving, used) = AP(Eigen::all, at);
+  P.bottomLeftCorner(used, kMoving) = P.topRightCorner(kMoving, used).transpose();
+  P.bottomRightCorner(used, used) = state.P(at, at);
   return {named, std::move(x), 0.5 * (P + P.transpose())};
 }
 
