@@ -67,6 +67,7 @@ void read_fixing(const Node& map, carrier::FixingOptions& fixing) {
   fixing.ratio = fix.number_within("ratio", fixing.ratio, 1.0, 1e3);
   fixing.success_rate = fix.number_within("success_rate", fixing.success_rate, 0.0, 1.0);
   fixing.elevation_mask = geo::kDegree * fix.number_within("elevation_mask_deg", 0.0, 0.0, 80.0);
+  fixing.hold = fix.flag("hold", false);
 }
 
 void read_noise(const Node& map, carrier::PpkOptions& options) {
@@ -79,6 +80,7 @@ void read_noise(const Node& map, carrier::PpkOptions& options) {
   noise.phase = node->number_within("phase", 1.0, 1e-3, 100.0);
   noise.code = node->number_within("code", 1.0, 1e-3, 100.0);
   noise.code_inflation = node->number_within("code_inflation", 1.0, 1.0, 100.0);
+  noise.rate = node->number_within("rate", 1.0, 1e-3, 100.0);
   options.noise = noise;
 }
 

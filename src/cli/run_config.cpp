@@ -105,20 +105,21 @@ void read_vehicle(const Node& root, study::Setup& setup) {
 }
 
 int satellites_left(const Node& outage, const RunConfig& run) {
-  const int left = static_cast<int>(outage.number_within("satellites", 0.0, 0.0, 100.0));
+  const auto node = outage.find("satellites");
+  if (!node) return 0;
+  const long left = node->integer();
+  if (left < 0 || left > 100) throw node->error(fmt::format("{} satellites", left), "a number from 0 to 100");
   if (left > 0 && !run.tight)
-    throw outage.at("satellites")
-        .error("a partial outage of a loosely coupled run", "gnss: {coupling: tight, ..}",
-               "Fixes need four satellites; only observations themselves help with fewer.");
-  return left;
+    throw node->error("a partial outage of a loosely coupled run", "gnss: {coupling: tight, ..}",
+                      "Fixes need four satellites; only observations themselves help with fewer.");
+  return static_cast<int>(left);
 }
 
 void read_outages(const Node& root, RunConfig& run) {
   const auto outages = root.find("outages");
   if (!outages) return;
   if (outages->is_map()) {
-    run.sweep = sweep_from(*outages);
-    run.sweep->satellites_left = satellites_left(*outages, run);
+    run.sweep = sweep_from(*outages, run);
     return;
   }
   for (const Node& item : outages->items()) {
@@ -189,13 +190,14 @@ geo::Geodetic geodetic_from(const Node& node) {
   return {geo::kDegree * v.x(), geo::kDegree * v.y(), v.z()};
 }
 
-study::OutageSweep sweep_from(const Node& node) {
+study::OutageSweep sweep_from(const Node& node, const RunConfig& run) {
   study::OutageSweep sweep;
   sweep.every_s = node.number_within("every_s", sweep.every_s, 1.0, 1e6);
   sweep.first_s = node.number_within("first_s", sweep.first_s, 0.0, 1e6);
   sweep.durations_s = node.at("durations_s").numbers();
   for (const double duration : sweep.durations_s)
     if (!(duration > 0.0)) throw node.at("durations_s").error("a duration of zero or less", "seconds above zero");
+  sweep.satellites_left = satellites_left(node, run);
   return sweep;
 }
 

@@ -64,7 +64,7 @@ struct RunConfig {
 /// [latitude_deg, longitude_deg, height_m]
 [[nodiscard]] geo::Geodetic geodetic_from(const config::Node& node);
 
-/// Keys `every_s`, `first_s`, `durations_s` of a swept study.
-[[nodiscard]] study::OutageSweep sweep_from(const config::Node& node);
+/// Keys `every_s`, `first_s`, `durations_s`, `satellites` of a swept study of a run.
+[[nodiscard]] study::OutageSweep sweep_from(const config::Node& node, const RunConfig& run);
 
 }  // namespace coast::cli

@@ -23,7 +23,7 @@ std::vector<study::NamedModel> named_models(const Node& root, std::string_view k
 SweepStudy sweep_study(const Node& root) {
   SweepStudy study;
   study.run = read_run_config(root.at("run").path());
-  study.sweep = sweep_from(root.at("sweep"));
+  study.sweep = sweep_from(root.at("sweep"), study.run);
   study.models = named_models(root, "error_models");
   if (study.models.empty()) study.models.push_back({study.run.setup.model.sensor_name(), study.run.setup.model});
   return study;

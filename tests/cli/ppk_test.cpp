@@ -78,6 +78,61 @@ TEST(PpkCommand, FeedsTheNavigationFilterInOneCommand) {
   EXPECT_NE(text_of(folder.path() / "stdout.txt").find("epochs fixed"), std::string::npos);
 }
 
+/// The mission's run file with other outages and coupling.
+fs::path run_file(const fs::path& folder, const std::string& gnss, const std::string& outages) {
+  std::string text = text_of(rinex() / "run-rinex.yaml");
+  const auto replace = [&text](const std::string& from, const std::string& to) {
+    for (std::size_t at = text.find(from); at != std::string::npos; at = text.find(from, at + to.size()))
+      text.replace(at, from.size(), to);
+  };
+  replace("gnss: {", "gnss: {" + gnss);
+  for (const char* file : {"rover.obs", "base.obs", "brdc.nav", "imu.csv", "error_model.yaml", "truth.nav"})
+    replace(file, (rinex() / file).string());
+  write(folder / "run.yaml", text + outages);
+  return folder / "run.yaml";
+}
+
+TEST(PpkCommand, TightlyCoupledRunUsesThreeSatellites) {
+  const test::TemporaryDirectory folder;
+  const fs::path yaml =
+      run_file(folder.path(), "coupling: tight, ", "outages: [{start_s: 208920, duration_s: 30, satellites: 3}]\n");
+  const Outcome outcome = run(fmt::format("process '{}'", yaml.string()), folder.path());
+  ASSERT_EQ(outcome.status, 0) << outcome.error;
+  const json summary = json_of(folder.path() / "run.out" / "summary.json");
+  test::expect_valid("summary", summary);
+  EXPECT_GE(summary["gnss"]["used"], 335);
+  for (const json& rms : summary["reference"]["smoothed"]["position_rms_m"]) EXPECT_LT(rms.get<double>(), 0.06);
+  // Inertial navigation alone is a metre off after 30 s; three satellites hold two directions of four unknowns' three.
+  for (const json& end : summary["outages"][0]["forward"]["end_m"]) EXPECT_LT(std::abs(end.get<double>()), 0.5);
+  const json page = json_of(folder.path() / "run.out" / "report.json");
+  EXPECT_NE(page.dump().find("carrier phases"), std::string::npos);
+}
+
+struct SpoiledCoupling {
+  const char* gnss;
+  const char* outages;
+  const char* message;
+};
+
+class SpoiledCouplings : public testing::TestWithParam<SpoiledCoupling> {};
+
+TEST_P(SpoiledCouplings, EndWithStatusTwoAndSayWhat) {
+  const test::TemporaryDirectory folder;
+  const fs::path yaml = run_file(folder.path(), GetParam().gnss, GetParam().outages);
+  const Outcome outcome = run(fmt::format("process '{}'", yaml.string()), folder.path());
+  EXPECT_EQ(outcome.status, 2) << outcome.error;
+  EXPECT_NE(outcome.error.find(GetParam().message), std::string::npos) << outcome.error;
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    PpkCommand, SpoiledCouplings,
+    testing::Values(SpoiledCoupling{"coupling: close, ", "", "loose"},
+                    SpoiledCoupling{"coupling: tight, noise: estimated, ", "", "does not use"},
+                    SpoiledCoupling{"", "outages: [{start_s: 208920, duration_s: 30, satellites: 3}]\n", "partial outage"},
+                    SpoiledCoupling{"coupling: tight, ", "outages: [{start_s: 208920, duration_s: 30, satellites: -1}]\n",
+                                    "-1 satellites"}),
+    [](const testing::TestParamInfo<SpoiledCoupling>& spoiled) { return fmt::format("n{}", spoiled.index); });
+
 TEST(PpkCommand, ExampleOfTheHelpPageIsThatOfTheSchema) {
   EXPECT_EQ(test::yaml_as_json(ppk_example("")), test::schema("ppk").at("examples").at(0));
 }
