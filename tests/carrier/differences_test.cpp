@@ -70,6 +70,59 @@ TEST(Differences, EndArcsWhereTheReceiverSaysSoOrBandsJumpApart) {
   EXPECT_EQ(found, counted);
 }
 
+/// Shifts a satellite's phases from an epoch on, unseen by the receiver.
+void slip(SimulatedBaseline& mission, std::size_t epoch, record::Satellite satellite, const std::map<char, double>& cycles) {
+  for (std::size_t i = epoch; i < mission.observed.rover.epochs.size(); ++i)
+    for (record::Observation& o : mission.observed.rover.epochs[i].observations)
+      if (o.satellite == satellite && o.phase_cycles && cycles.contains(o.signal.band))
+        *o.phase_cycles += cycles.at(o.signal.band);
+}
+
+/// Epochs at which a phase begins a new arc, the first apart.
+std::vector<std::size_t> breaks_of(const SimulatedBaseline& mission, record::Satellite satellite, char band) {
+  const auto arcs = arcs_of(mission.differences(), satellite, band);
+  std::vector<std::size_t> breaks;
+  for (std::size_t i = 1; i < arcs.size(); ++i)
+    if (arcs[i].second != arcs[i - 1].second) breaks.push_back(i);
+  return breaks;
+}
+
+/// A GPS satellite that has the bands 1 and 2 throughout.
+record::Satellite highest_of(const SimulatedBaseline& mission) {
+  const std::vector<DifferenceEpoch> epochs = mission.differences();
+  const SatelliteDifference* highest = nullptr;
+  for (const SatelliteDifference& s : epochs.back().satellites)
+    if (s.satellite.system == SatelliteSystem::kGps && (highest == nullptr || s.base_elevation > highest->base_elevation))
+      highest = &s;
+  return highest->satellite;
+}
+
+// 9 cycles of L1 with 7 of L2 move the geometry-free combination by 3 mm, the wide lane by two cycles.
+TEST(Differences, MelbourneWuebbenaSeesWhatTheGeometryFreeCombinationDoesNot) {
+  simulate::ObservationOptions options;
+  options.code_sd = options.code_multipath_sd = 0.1;  // two wide lanes are more than four sigma
+  SimulatedBaseline mission("car_roundabout", 360.0, options);
+  const record::Satellite satellite = highest_of(mission);
+  slip(mission, 150, satellite, {{'1', 9.0}, {'2', 7.0}});
+  for (record::ObservationEpoch& epoch : mission.observed.rover.epochs)
+    for (record::Observation& o : epoch.observations) {
+      o.doppler_hz.reset();
+      if (o.signal.band == '5') o.phase_cycles.reset();
+    }
+  for (const char band : {'1', '2'}) EXPECT_EQ(breaks_of(mission, satellite, band), std::vector<std::size_t>{150}) << band;
+}
+
+TEST(Differences, DopplerSeesSlipsOfSingleBands) {
+  SimulatedBaseline mission("car_roundabout", 360.0, simulate::ObservationOptions{});
+  const record::Satellite satellite = highest_of(mission);
+  for (record::ObservationRecording* receiver : {&mission.observed.rover, &mission.observed.base})
+    for (record::ObservationEpoch& epoch : receiver->epochs)
+      std::erase_if(epoch.observations, [](const record::Observation& o) { return o.signal.band != '1'; });
+  ASSERT_TRUE(breaks_of(mission, satellite, '1').empty());
+  slip(mission, 200, satellite, {{'1', -5.0}});
+  EXPECT_EQ(breaks_of(mission, satellite, '1'), std::vector<std::size_t>{200});
+}
+
 TEST(Differences, EndAnArcWhereLockIsLostBesideAMissingPhase) {
   SimulatedBaseline mission("car_roundabout", 360.0, error_free());
   record::Observation* lost = nullptr;

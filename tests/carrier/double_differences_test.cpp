@@ -77,6 +77,35 @@ TEST_F(DoubleDifferencesTest, AreBlindToClocksAndWhite) {
   }
 }
 
+TEST_F(DoubleDifferencesTest, RatesAreMeasuredWhereTheStateHasAVelocity) {
+  const DifferenceEpoch& epoch = epochs_[100];
+  const simulate::Kinematics truth = mission_.truth(epoch.t);
+  Eigen::VectorXd x(6);
+  x << truth.r_eb_e, truth.v_eb_e;
+  RelativeState state({kVelocityUnknowns.begin(), kVelocityUnknowns.end()}, x, Eigen::MatrixXd::Identity(6, 6));
+  const DoubleDifferences at = double_differences(epoch, state, {}, {}, {});
+  std::vector<double> rates;  // m/s
+  for (std::size_t i = 0; i < at.rows.size(); ++i)
+    if (at.rows[i].observable == Observable::kRate) rates.push_back(at.residual(static_cast<Eigen::Index>(i)) * at.rows[i].sd);
+  ASSERT_GT(rates.size(), 20U);
+  // All share the clock; 0.02 Hz of two receivers on wavelengths of 19 to 26 cm.
+  const Eigen::Map<const Eigen::VectorXd> all(rates.data(), static_cast<Eigen::Index>(rates.size()));
+  const double rms = std::sqrt((all.array() - all.mean()).square().mean());
+  EXPECT_GT(rms, 0.02 * std::sqrt(2.0) * 0.19 * 0.7);
+  EXPECT_LT(rms, 0.02 * std::sqrt(2.0) * 0.26 * 1.3);
+  constexpr double kStep = 1.0;  // m/s; linear
+  for (Eigen::Index k = 3; k < 6; ++k) {
+    RelativeState moved = state;
+    moved.x(k) += kStep;
+    const DoubleDifferences there = double_differences(epoch, moved, {}, {}, {});
+    for (std::size_t i = 0; i < at.rows.size(); ++i) {
+      const auto row = static_cast<Eigen::Index>(i);
+      // The Sagnac term of the velocity, 6e-6 at most, and the Earth's turn on the signal's way are left out of the design.
+      EXPECT_NEAR((at.residual(row) - there.residual(row)) / kStep * at.rows[i].sd, at.H(row, k) * at.rows[i].sd, 2e-5);
+    }
+  }
+}
+
 TEST_F(DoubleDifferencesTest, DesignIsTheDerivative) {
   const DifferenceEpoch& epoch = epochs_[100];
   const DoubleDifferences at = double_differences(epoch, state_, {}, {}, {});
