@@ -53,6 +53,7 @@ CoupledEpoch Coupling::step(RelativeState prior, const DifferenceEpoch& epoch) {
 }
 
 std::size_t most_unknowns(const std::vector<DifferenceEpoch>& epochs, const PpkOptions& options, double interval_s) {
+  constexpr std::size_t kForAll = 3;  // zenith delay, inter-frequency biases of two bands
   const AirStates air = options.air.value_or(AirStates{});
   std::map<Unknown, geo::GpsTime> seen;
   std::size_t most = 0;
@@ -65,7 +66,7 @@ std::size_t most_unknowns(const std::vector<DifferenceEpoch>& epochs, const PpkO
     std::erase_if(seen, [&](const auto& of) { return epoch.t - of.second > longest_unseen(of.first, interval_s); });
     most = std::max(most, seen.size());
   }
-  return most + (air.zenith_delay ? 1 : 0);
+  return most + kForAll;
 }
 
 }  // namespace coast::carrier

@@ -141,6 +141,8 @@ void fill(const Candidate& c, const DifferenceEpoch& epoch, const RelativeState&
   add({Kind::kZenithDelay, {}, '0', 0}, c.path.wet_mapping);
   const double squared = kL1Frequency / band.frequency * kL1Frequency / band.frequency;
   add({Kind::kIonosphere, satellite.satellite, '0', 0}, phase ? -squared : squared);
+  if (phase && satellite.satellite.system == record::SatelliteSystem::kGlonass)
+    add({Kind::kInterFrequencyBias, {}, band.band, 0}, glonass_channel(band.band, band.frequency));
   if (phase) add({Kind::kAmbiguity, satellite.satellite, band.band, band.arc}, band.wavelength());
   dd.residual(i) = weight * residual;
 }

@@ -31,8 +31,7 @@ std::vector<Fixable> fixable(const DifferenceEpoch& epoch, const FloatEpoch& upd
     if (row.observable != Observable::kPhase || row.direction.elevation < elevation_mask) continue;
     const SatelliteDifference& satellite = epoch.satellites[row.satellite];
     const BandDifference& band = satellite.bands[row.band];
-    // Frequencies of GLONASS differ: its double differences are not integers.
-    if (band.half_cycle || satellite.satellite.system == SatelliteSystem::kGlonass) continue;
+    if (band.half_cycle) continue;
     const Eigen::Index i = state.index({Kind::kAmbiguity, satellite.satellite, band.band, band.arc});
     if (i >= 0) all.push_back({satellite.satellite, band.band, row.direction.elevation, i});
   }
@@ -190,12 +189,28 @@ class PartialFixing {
   std::optional<Attempt> best_;
 };
 
+/// The state where these integers are known, and what they are.
+void take(const Attempt& t, RelativeState& state, FixedSolution& solution) {
+  const Eigen::LDLT<Eigen::MatrixXd> Q(t.Q);
+  const std::vector<FixedPair> pairs = pairs_of(t.D, state, t.integers.candidates.col(0));
+  state.x -= t.PDt * Q.solve(t.a - t.integers.candidates.col(0));
+  state.P -= t.PDt * Q.solve(t.PDt.transpose());
+  solution.pairs.insert(solution.pairs.end(), pairs.begin(), pairs.end());
+  for (const Satellite satellite : satellites_of(t.set)) solution.satellites.push_back(satellite);
+  solution.ambiguities += static_cast<int>(t.a.size());
+}
+
 }  // namespace
 
 FixedSolution AmbiguityFixing::fix(const DifferenceEpoch& epoch, const FloatEpoch& updated, const RelativeState& state) {
   FixedSolution solution;
   const std::vector<Fixable> all = fixable(epoch, updated, state, options_.elevation_mask);
-  const std::optional<Attempt> best = PartialFixing(all, state, options_).run(without_);
+  std::vector<Fixable> first = all, glonass;
+  std::erase_if(first, [](const Fixable& f) { return f.satellite.system == SatelliteSystem::kGlonass; });
+  std::ranges::copy_if(all, std::back_inserter(glonass),
+                       [](const Fixable& f) { return f.satellite.system == SatelliteSystem::kGlonass; });
+  if (first.empty()) std::swap(first, glonass);
+  const std::optional<Attempt> best = PartialFixing(first, state, options_).run(without_);
   if (!best) {
     solution.shortfall = Shortfall::kFewAmbiguities;
     return solution;
@@ -207,15 +222,14 @@ FixedSolution AmbiguityFixing::fix(const DifferenceEpoch& epoch, const FloatEpoc
         best->integers.success_rate < options_.success_rate ? Shortfall::kLowSuccessRate : Shortfall::kLowRatio;
     return solution;
   }
-  const Eigen::LDLT<Eigen::MatrixXd> Q(best->Q);
-  solution.x = state.x - best->PDt * Q.solve(best->a - best->integers.candidates.col(0));
-  const Eigen::MatrixXd position = best->PDt.topRows<3>();
-  solution.position_covariance_e = state.P.topLeftCorner<3, 3>() - position * Q.solve(position.transpose());
-  solution.satellites = satellites_of(best->set);
-  solution.pairs = pairs_of(best->D, state, best->integers.candidates.col(0));
-  without_ = satellites_of(all);
+  RelativeState fixed = state;
+  take(*best, fixed, solution);
+  without_ = satellites_of(first);
   std::erase_if(without_, [&](Satellite s) { return std::ranges::find(solution.satellites, s) != solution.satellites.end(); });
-  solution.ambiguities = static_cast<int>(best->a.size());
+  // Inter-frequency biases leave GLONASS's integers in doubt until the others have told where the rover is.
+  if (const std::optional<Attempt> more = attempt(glonass, fixed); more && good(*more, options_)) take(*more, fixed, solution);
+  solution.x = fixed.x;
+  solution.position_covariance_e = fixed.P.topLeftCorner<3, 3>();
   solution.fixed = true;
   return solution;
 }

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "coast/carrier/signals.hpp"
 #include "receiver_track.hpp"
 
 namespace coast::carrier {
@@ -21,8 +22,13 @@ Unknown ambiguity_of(const SatelliteDifference& satellite, const BandDifference&
   return {Kind::kAmbiguity, satellite.satellite, band.band, band.arc};
 }
 
-double unknown_variance(const BandDifference& band) {
-  return kUnknownAmbiguity / band.wavelength() * kUnknownAmbiguity / band.wavelength();
+/// Ambiguities of GLONASS are integers where the clock of its phases is known: a metre of that clock is 0.002 cycles from one
+/// channel to the next. Codes tell it, hardware delays included.
+double unknown_variance(const SatelliteDifference& satellite, const BandDifference& band) {
+  constexpr double kOfGlonass = 5.0;  // m
+  const bool glonass = satellite.satellite.system == record::SatelliteSystem::kGlonass;
+  const double sd = (glonass ? kOfGlonass : kUnknownAmbiguity) / band.wavelength();
+  return sd * sd;
 }
 
 /// Phase less code, cycles; less the code of another band where its own is missing.
@@ -200,15 +206,25 @@ void RelativeFilter::predict_ambiguities(const DifferenceEpoch& epoch, double dt
       const Unknown unknown = ambiguity_of(satellite, band);
       seen_[unknown] = epoch.t;
       if (state_.index(unknown) >= 0) continue;
-      if (const std::optional<double> value = from_code(satellite, band)) state_.add(unknown, *value, unknown_variance(band));
+      if (const std::optional<double> value = from_code(satellite, band))
+        state_.add(unknown, *value, unknown_variance(satellite, band));
+      if (satellite.satellite.system == record::SatelliteSystem::kGlonass) add_inter_frequency_bias(band);
     }
+}
+
+/// Receivers of different makes delay the phases of GLONASS's channels differently, by up to 5 cm from one to the next,
+/// linearly (Wanninger 2012). It is constant, and all satellites of a band share it.
+void RelativeFilter::add_inter_frequency_bias(const BandDifference& band) {
+  constexpr double kSd = 0.03;  // m
+  const Unknown unknown{Kind::kInterFrequencyBias, {}, band.band, 0};
+  if (glonass_channel(band.band, band.frequency) != 0.0 && state_.index(unknown) < 0) state_.add(unknown, 0.0, kSd * kSd);
 }
 
 void RelativeFilter::start_anew(const SatelliteDifference& satellite, const BandDifference& band) {
   const Unknown unknown = ambiguity_of(satellite, band);
   const Eigen::Index i = state_.index(unknown);
   weighting_.known.erase(unknown);
-  state_.reset(i, from_code(satellite, band).value_or(state_.x(i)), unknown_variance(band));
+  state_.reset(i, from_code(satellite, band).value_or(state_.x(i)), unknown_variance(satellite, band));
 }
 
 void RelativeFilter::update(const DifferenceEpoch& epoch, FloatEpoch& result) {

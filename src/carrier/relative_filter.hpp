@@ -52,6 +52,7 @@ class RelativeFilter {
   bool predict_position(const DifferenceEpoch& epoch, double dt);
   void forget_unseen(const DifferenceEpoch& epoch);
   void predict_ambiguities(const DifferenceEpoch& epoch, double dt);
+  void add_inter_frequency_bias(const BandDifference& band);
   void predict_zenith_delay(const Eigen::Vector3d& baseline_e, const Eigen::Vector3d& up_e, double dt);
   void predict_ionosphere(const DifferenceEpoch& epoch, double baseline, double dt);
   void start_anew(const SatelliteDifference& satellite, const BandDifference& band);

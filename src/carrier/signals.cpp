@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 
 namespace coast::carrier {
 
@@ -51,6 +52,12 @@ std::optional<double> carrier_frequency(SatelliteSystem system, char band, int g
   const auto found = std::ranges::find_if(kCarriers, [&](const Carrier& c) { return c.system == system && c.band == band; });
   if (found == kCarriers.end()) return std::nullopt;
   return (found->mhz + found->mhz_per_channel * glonass_channel) * kMHz;
+}
+
+double glonass_channel(char band, double frequency) {
+  const std::optional<double> zero = carrier_frequency(SatelliteSystem::kGlonass, band, 0);
+  const std::optional<double> one = carrier_frequency(SatelliteSystem::kGlonass, band, 1);
+  return zero && one && *one != *zero ? std::round((frequency - *zero) / (*one - *zero)) : 0.0;
 }
 
 }  // namespace coast::carrier

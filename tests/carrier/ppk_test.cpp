@@ -4,6 +4,7 @@
 #include "coast/carrier/ppk.hpp"
 
 #include "coast/carrier/base_position.hpp"
+#include "coast/carrier/signals.hpp"
 
 #include <gtest/gtest.h>
 
@@ -102,15 +103,33 @@ TEST(Ppk, SolvesSystemsOfWhichNoRecordingIsAtHand) {
   }
 }
 
-TEST(Ppk, GlonassAloneStaysFloat) {
+// Receivers of two makes: up to 5 cm from one channel to the next (Wanninger 2012), a quarter of a cycle, three cycles over
+// all.
+TEST(Ppk, IntegersOfGlonassAreFoundWithInterFrequencyBiases) {
   simulate::ObservationOptions options;
-  options.systems = {SatelliteSystem::kGlonass};
-  const SimulatedBaseline mission("car_roundabout", 400.0, options);
-  const PpkSolution solution = mission.solve({});
-  const Errors e = errors_of(mission, solution);
-  EXPECT_EQ(e.fixed, 0U);
-  EXPECT_GT(e.floats, 390U);
-  EXPECT_EQ(solution.epochs.back().shortfall, Shortfall::kFewAmbiguities);
+  options.systems = {SatelliteSystem::kGps, SatelliteSystem::kGlonass};
+  options.phase_multipath_sd = 0.001;
+  for (const double bias : {0.0, 0.03, -0.03}) {
+    SimulatedBaseline mission("car_roundabout", 400.0, options);
+    for (record::ObservationEpoch& epoch : mission.observed.rover.epochs)
+      for (record::Observation& o : epoch.observations) {
+        if (o.satellite.system != SatelliteSystem::kGlonass || !o.phase_cycles) continue;
+        const int channel = mission.observed.rover.glonass_channels.at(o.satellite.number);
+        *o.phase_cycles += bias * channel * *carrier_frequency(o.satellite.system, o.signal.band, channel) / kSpeedOfLight;
+      }
+    const PpkSolution solution = mission.solve({});
+    const Errors e = errors_of(mission, solution);
+    EXPECT_GE(e.fixed, 390U) << bias;
+    EXPECT_EQ(e.wrong, 0U) << bias;
+    std::size_t phases = 0, fixed = 0;
+    for (const PpkEpoch& epoch : solution.epochs)
+      for (const SignalResidual& r : epoch.residuals) {
+        if (!r.phase || r.satellite.system != SatelliteSystem::kGlonass) continue;
+        ++phases;
+        fixed += r.use == SignalResidual::Use::kFixed ? 1 : 0;
+      }
+    EXPECT_GT(static_cast<double>(fixed), 0.7 * static_cast<double>(phases)) << bias;
+  }
 }
 
 TEST(Ppk, EstimatesTheIonosphereOverLongBaselines) {

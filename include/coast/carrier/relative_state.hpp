@@ -11,10 +11,10 @@
 namespace coast::carrier {
 
 struct Unknown {
-  enum class Kind : std::uint8_t { kPosition, kVelocity, kZenithDelay, kIonosphere, kAmbiguity };
+  enum class Kind : std::uint8_t { kPosition, kVelocity, kZenithDelay, kInterFrequencyBias, kIonosphere, kAmbiguity };
   Kind kind = Kind::kPosition;
   record::Satellite satellite;
-  char band = '0';  ///< of ambiguities; x, y or z of the velocity
+  char band = '0';  ///< of ambiguities and GLONASS's inter-frequency biases; x, y or z of the velocity
   int arc = 0;      ///< of ambiguities
 
   auto operator<=>(const Unknown&) const = default;
@@ -36,7 +36,7 @@ struct StateChange {
 };
 
 /// Mean and covariance of a changing set of unknowns. The first three are the position, ECEF, m; ambiguities are in cycles,
-/// delays in m, velocities in m/s.
+/// delays in m, inter-frequency biases in m from one of GLONASS's channels to the next, velocities in m/s.
 class RelativeState {
  public:
   RelativeState();

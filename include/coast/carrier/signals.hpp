@@ -14,5 +14,7 @@ inline constexpr double kL1Frequency = 1575.42e6;     ///< Hz: what ionospheric 
 /// have.
 /// @param glonass_channel  -7 to 13; of bands 1 and 2 of GLONASS only
 [[nodiscard]] std::optional<double> carrier_frequency(record::SatelliteSystem system, char band, int glonass_channel = 0);
+/// Of a GLONASS satellite from its frequency, Hz; 0 for bands that all share.
+[[nodiscard]] double glonass_channel(char band, double frequency);
 
 }  // namespace coast::carrier
