@@ -7,6 +7,8 @@
 #include <numbers>
 #include <stdexcept>
 
+#include "latitude_table.hpp"
+
 namespace coast::carrier {
 
 namespace {
@@ -19,8 +21,7 @@ double continued_fraction(double sine, double a, double b, double c) {
   return (1.0 + a / (1.0 + b / (1.0 + c))) / (sine + a / (sine + b / (sine + c)));
 }
 
-/// Coefficients at 15, 30, 45, 60, 75 degrees of latitude: Niell (1996), tables 3 and 4.
-using Column = std::array<double, 5>;
+/// Niell (1996), tables 3 and 4.
 struct Coefficients {
   Column a, b, c;
 };
@@ -34,14 +35,6 @@ constexpr Coefficients kWet{{5.8021897e-4, 5.6794847e-4, 5.8118019e-4, 5.9727542
                             {1.4275268e-3, 1.5138625e-3, 1.4572752e-3, 1.5007428e-3, 1.7599082e-3},
                             {4.3472961e-2, 4.6729510e-2, 4.3908931e-2, 4.4626982e-2, 5.4736038e-2}};
 constexpr double kHeightA = 2.53e-5, kHeightB = 5.49e-3, kHeightC = 1.14e-3;
-
-/// Linear between the latitudes of the tables, constant beyond them.
-double at_latitude(const Column& column, double latitude) {
-  const double at = std::clamp(std::abs(latitude) / (15.0 * kDegree) - 1.0, 0.0, 4.0);
-  const auto below = std::min<std::size_t>(static_cast<std::size_t>(at), 3);
-  const double part = at - static_cast<double>(below);
-  return (1.0 - part) * column.at(below) + part * column.at(below + 1);
-}
 
 }  // namespace
 
@@ -73,16 +66,6 @@ double klobuchar_delay(const record::Klobuchar& model, const geo::Geodetic& rece
   constexpr double kNight = 5e-9;  // s
   const double cosine = std::abs(phase) < 1.57 ? 1.0 - phase * phase * (0.5 - phase * phase / 24.0) : 0.0;
   return kLight * obliquity * (kNight + std::max(amplitude, 0.0) * cosine);
-}
-
-ZenithDelay standard_zenith_delay(const geo::Geodetic& receiver) {
-  const double height = std::clamp(receiver.height, -500.0, 10000.0);
-  const double pressure = 1013.25 * std::pow(1.0 - 2.2557e-5 * height, 5.2568);  // hPa
-  const double temperature = 288.15 - 6.5e-3 * height;                           // K
-  constexpr double kHumidity = 0.7;
-  const double vapour = kHumidity * 6.108 * std::exp((17.15 * temperature - 4684.0) / (temperature - 38.45));  // hPa
-  const double gravity = 1.0 - 0.00266 * std::cos(2.0 * receiver.latitude) - 0.00028e-3 * height;
-  return {0.0022768 * pressure / gravity, 0.002277 * (1255.0 / temperature + 0.05) * vapour};
 }
 
 TroposphericMapping niell_mapping(const geo::Geodetic& receiver, double elevation, geo::GpsTime t) {

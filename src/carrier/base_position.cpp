@@ -35,10 +35,25 @@ KnownBase at_rest(const Eigen::Vector3d& r_e, std::string from) {
   return {[r_e](geo::GpsTime) { return std::optional(r_e); }, r_e, std::move(from)};
 }
 
+/// A day of a decimal year is known to half of one: a twentieth of a millimetre where plates move 4 cm a year.
+double decimal_year(geo::GpsTime t) {
+  constexpr double kYear = 365.25 * 86400.0;
+  return 1980.0137 + (t - geo::GpsTime::from_week(0, 0.0)) / kYear;
+}
+
+KnownBase in_orbits_frame(const Eigen::Vector3d& r_e, const BaseAt::Datum& datum, const ObservationRecording& base) {
+  const geo::FrameEpoch target{"ITRF2020", decimal_year(base.epochs.front().t)};
+  const Eigen::Vector3d moved_e = geo::transform(r_e, datum.at, target, datum.velocity_mpy);
+  return at_rest(antenna(base, moved_e),
+                 fmt::format("given in {} at {:.2f}; {:.3f} m from there in {} at {:.2f}", datum.at.frame, datum.at.year,
+                             (moved_e - r_e).norm(), target.frame, target.year));
+}
+
 }  // namespace
 
 KnownBase known_base(const BaseAt& base_at, const ObservationRecording& base, const Orbits& orbits,
                      const DifferenceOptions& options) {
+  if (base_at.how == BaseAt::How::kGiven && base_at.datum) return in_orbits_frame(base_at.r_e, *base_at.datum, base);
   if (base_at.how == BaseAt::How::kGiven) return at_rest(antenna(base, base_at.r_e), "given in the configuration");
   if (base_at.how == BaseAt::How::kHeader) {
     if (!base.approximate_r_e)

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "coast/carrier/signals.hpp"
+#include "coast/carrier/solid_tides.hpp"
 #include "cycle_slips.hpp"
 #include "receiver_track.hpp"
 
@@ -12,6 +13,8 @@ namespace coast::carrier {
 namespace {
 
 using record::Satellite;
+
+constexpr double kOnEarth = 6e6;  // m from its centre
 
 /// What the base's observations of one satellite differ from the model at its position.
 struct BaseSatellite {
@@ -34,12 +37,22 @@ std::optional<Eigen::Vector3d> velocity_of(const BasePosition& position, geo::Gp
   return (*after - *before) / (2.0 * kHalf);
 }
 
+/// By how much the ground lifts the base more than the rover: coordinates are of an Earth without tides. Over short baselines
+/// both rise alike, by a tenth of a millimetre a kilometre.
+Eigen::Vector3d lifted(const Eigen::Vector3d& r_base_e, const std::optional<Eigen::Vector3d>& r_rover_e, geo::GpsTime t) {
+  constexpr double kMatters = 10e3;  // m
+  if (!r_rover_e || (r_base_e - *r_rover_e).norm() < kMatters || r_rover_e->norm() < kOnEarth) return Eigen::Vector3d::Zero();
+  return solid_tide(r_base_e, t) - solid_tide(*r_rover_e, t);
+}
+
+/// @param r_rover_e  about
 std::vector<BaseEpoch> residuals_of(const std::vector<TrackedEpoch>& base, const BasePosition& position,
-                                    const DifferenceOptions& options) {
+                                    const std::optional<Eigen::Vector3d>& r_rover_e, const DifferenceOptions& options) {
   std::vector<BaseEpoch> epochs;
   for (const TrackedEpoch& tracked : base) {
-    const std::optional<Eigen::Vector3d> r_e = position(tracked.t);
+    std::optional<Eigen::Vector3d> r_e = position(tracked.t);
     if (!r_e) continue;
+    *r_e += lifted(*r_e, r_rover_e, tracked.t);
     BaseEpoch& epoch = epochs.emplace_back(BaseEpoch{tracked.t, *r_e, {}});
     const geo::Geodetic receiver = geo::geodetic_from_ecef(*r_e);
     const std::optional<Eigen::Vector3d> v_e = velocity_of(position, tracked.t);
@@ -172,12 +185,14 @@ std::vector<DifferenceEpoch> form_differences(const record::ObservationRecording
                                               const DifferenceOptions& options) {
   const geo::GpsTime first = rover.epochs.front().t, last = rover.epochs.back().t;
   const double room = options.longest_base_gap_s + 1.0;
-  Tracking of_rover{options.systems, {}, first, last}, of_base{options.systems, {}, first - room, last + room};
+  Tracking of_rover{options.systems, {}, first, last, options.air.ionosphere_free},
+      of_base{options.systems, {}, first - room, last + room};
   for (const auto& [band, pair] : signals) {
     of_rover.signals[band] = pair.rover;
     of_base.signals[band] = pair.base;
   }
-  const BaseInterpolation bases(residuals_of(track(base, orbits, of_base), base_position, options), options.longest_base_gap_s);
+  const BaseInterpolation bases(residuals_of(track(base, orbits, of_base), base_position, rover.approximate_r_e, options),
+                                options.longest_base_gap_s);
   std::vector<DifferenceEpoch> epochs;
   Eigen::Vector3d start_e = rover.approximate_r_e.value_or(Eigen::Vector3d::Zero());
   for (const TrackedEpoch& tracked : track(rover, orbits, of_rover)) {

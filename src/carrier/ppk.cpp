@@ -38,7 +38,7 @@ double upper_end(std::vector<double> values) {
 }
 
 /// What the baseline calls for.
-AirStates air_states(const std::vector<DifferenceEpoch>& epochs) {
+AirStates air_states(const std::vector<DifferenceEpoch>& epochs, bool ionosphere_free) {
   constexpr double kFar = 10e3;     // m
   constexpr double kAbove = 150.0;  // m
   std::vector<double> lengths, heights;
@@ -49,7 +49,7 @@ AirStates air_states(const std::vector<DifferenceEpoch>& epochs) {
     heights.push_back(std::abs(baseline_e.dot(epoch.r_base_e.normalized())));
   }
   const bool far = upper_end(lengths) > kFar;
-  return {far, far || upper_end(heights) > kAbove};
+  return {far || ionosphere_free, far || upper_end(heights) > kAbove, ionosphere_free};
 }
 
 void check(const record::ObservationRecording& rover, const record::ObservationRecording& base, const PpkSolution& solution,
@@ -108,7 +108,7 @@ PpkSolution solve_ppk(const record::ObservationRecording& rover, const record::O
       form_differences(rover, base, solution.signals, orbits, base_position, options.differences);
   check(rover, base, solution, epochs);
   PpkOptions settled = options;
-  if (!options.air) settled.air = air_states(epochs);
+  if (!options.air) settled.air = air_states(epochs, options.differences.air.ionosphere_free);
   const bool combined = options.order == PassOrder::kCombined;
   const bool backward = options.order == PassOrder::kBackward;
   Stages stages(progress, (options.noise ? 0 : 1) + (combined ? 2 : 1));

@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "coast/carrier/signals.hpp"
+#include "coast/carrier/surface_weather.hpp"
 
 namespace coast::carrier {
 
@@ -36,7 +37,7 @@ SignalPath path_to(const SatelliteState& satellite, const Eigen::Vector3d& r_rec
   path.to_satellite_e = (r_satellite_e - r_receiver_e) / range;
   path.direction = direction_of(r_satellite_e, r_receiver_e);
   if (!troposphere || path.direction.elevation < kLowest) return path;
-  const ZenithDelay zenith = standard_zenith_delay(receiver);
+  const ZenithDelay zenith = zenith_delay(surface_weather(receiver, t), receiver);
   const TroposphericMapping mapping = niell_mapping(receiver, path.direction.elevation, t);
   path.troposphere = mapping.hydrostatic * zenith.hydrostatic + mapping.wet * zenith.wet;
   path.wet_mapping = mapping.wet;

@@ -1,6 +1,7 @@
 #include "receiver_track.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <span>
 
 #include "coast/carrier/signals.hpp"
@@ -105,6 +106,22 @@ std::optional<CodeMeasurement> measurement_of(const Observation& code, const Sat
   return measurement;
 }
 
+/// Of two codes the combination in which delays that go with 1/f^2 cancel; none where there is one band only.
+std::optional<CodeMeasurement> without_ionosphere(CodeMeasurement first, OfSatellite observations, const Observation& code,
+                                                  int channel) {
+  for (const Observation& o : observations) {
+    const auto f = carrier_frequency(o.satellite.system, o.signal.band, channel);
+    if (!o.code_m || o.signal.band == code.signal.band || !f) continue;
+    const double squared = kL1Frequency / *f * kL1Frequency / *f;
+    const double a = squared / (squared - first.iono_factor), b = 1.0 - a;
+    first.code = a * first.code + b * *o.code_m;
+    first.iono_factor = 0.0;
+    first.noise = std::hypot(a, b);
+    return first;
+  }
+  return std::nullopt;
+}
+
 void track_satellite(const record::ObservationRecording& receiver, OfSatellite observations, const Orbits& orbits,
                      const Tracking& wanted, ArcCounter& arcs, TrackedEpoch& epoch) {
   const Satellite satellite = observations.front().satellite;
@@ -114,7 +131,9 @@ void track_satellite(const record::ObservationRecording& receiver, OfSatellite o
   if (code == nullptr) return;
   const std::optional<SatelliteState> state = at_transmission(orbits, satellite, epoch.t, *code->code_m);
   if (!state) return;
-  if (const auto measurement = measurement_of(*code, *state, channel)) epoch.codes.push_back(*measurement);
+  std::optional<CodeMeasurement> measurement = measurement_of(*code, *state, channel);
+  if (measurement && wanted.ionosphere_free) measurement = without_ionosphere(*measurement, observations, *code, channel);
+  if (measurement) epoch.codes.push_back(*measurement);
   if (!bands.empty()) epoch.satellites.push_back({satellite, *state, std::move(bands)});
 }
 
@@ -141,7 +160,7 @@ std::vector<std::optional<SinglePoint>> single_points(const record::ObservationR
                                                       const DifferenceOptions& options) {
   std::vector<std::optional<SinglePoint>> points;
   Eigen::Vector3d start_e = receiver.approximate_r_e.value_or(Eigen::Vector3d::Zero());
-  const Tracking codes{options.systems, {}, receiver.epochs.front().t, receiver.epochs.back().t};
+  const Tracking codes{options.systems, {}, receiver.epochs.front().t, receiver.epochs.back().t, options.air.ionosphere_free};
   for (const TrackedEpoch& epoch : track(receiver, orbits, codes)) {
     points.push_back(single_point(epoch.codes, epoch.t, start_e, options.air, options.elevation_mask));
     if (points.back()) start_e = points.back()->r_e;

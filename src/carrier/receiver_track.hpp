@@ -33,6 +33,7 @@ struct Tracking {
   const std::set<record::SatelliteSystem>& systems;
   std::map<std::pair<record::SatelliteSystem, char>, char> signals;  ///< of each system and band
   geo::GpsTime from, to;
+  bool ionosphere_free = false;  ///< codes of single-point positions
 };
 std::vector<TrackedEpoch> track(const record::ObservationRecording& receiver, const Orbits& orbits, const Tracking& wanted);
 

@@ -164,7 +164,7 @@ void RelativeFilter::forget_unseen(const DifferenceEpoch& epoch) {
 void RelativeFilter::predict_zenith_delay(const Eigen::Vector3d& baseline_e, const Eigen::Vector3d& up_e, double dt) {
   constexpr double kLeast = 0.001;     // m
   constexpr double kPerMetre = 4e-7;   // of baseline: a centimetre in 25 km
-  constexpr double kPerHeight = 3e-4;  // m/m: what a standard atmosphere may be off
+  constexpr double kPerHeight = 3e-4;  // m/m: what a mean atmosphere may be off
   constexpr double kWalk = 3e-5;       // m/sqrt(s)
   const Unknown unknown{Kind::kZenithDelay, {}, '0', 0};
   const double sd = kLeast + kPerMetre * baseline_e.norm() + kPerHeight * std::abs(baseline_e.dot(up_e));
@@ -177,8 +177,9 @@ void RelativeFilter::predict_zenith_delay(const Eigen::Vector3d& baseline_e, con
 
 /// Differences between receivers grow with the distance, a millimetre a km in quiet times, and change within half an hour.
 void RelativeFilter::predict_ionosphere(const DifferenceEpoch& epoch, double baseline, double dt) {
-  constexpr double kPerMetre = 1e-6;  // vertical; more towards the horizon
-  constexpr double kTime = 1800.0;    // s
+  constexpr double kPerMetre = 1e-6;   // vertical; more towards the horizon
+  constexpr double kUnbounded = 10.0;  // m
+  constexpr double kTime = 1800.0;     // s
   const double phi = std::exp(-dt / kTime);
   for (Eigen::Index i = 3; i < state_.size(); ++i) {
     const Unknown& unknown = state_.unknowns()[static_cast<std::size_t>(i)];
@@ -190,7 +191,7 @@ void RelativeFilter::predict_ionosphere(const DifferenceEpoch& epoch, double bas
     const Unknown unknown{Kind::kIonosphere, satellite.satellite, '0', 0};
     seen_[unknown] = epoch.t;
     const double slant = 1.0 / std::sqrt(std::max(1.0 - std::pow(0.95 * std::cos(satellite.base_elevation), 2.0), 0.05));
-    const double sd = kPerMetre * baseline * slant;
+    const double sd = options_.air->unbounded ? kUnbounded : kPerMetre * baseline * slant;
     ionosphere_[unknown] = sd * sd;
     if (state_.index(unknown) < 0) state_.add(unknown, 0.0, sd * sd);
   }

@@ -55,10 +55,10 @@ class Problem {
     l.residual.resize(n);
     for (Eigen::Index i = 0; i < n; ++i) {
       const auto& [residual, path] = rows[static_cast<std::size_t>(i)];
-      const SatelliteSystem system = measurements_[l.used[static_cast<std::size_t>(i)]].satellite.system;
-      const double weight = 1.0 / code_sd(placed ? path.direction.elevation : 1.0);
+      const CodeMeasurement& m = measurements_[l.used[static_cast<std::size_t>(i)]];
+      const double weight = 1.0 / (m.noise * code_sd(placed ? path.direction.elevation : 1.0));
       l.H.block<1, 3>(i, 0) = -weight * path.to_satellite_e.transpose();
-      l.H(i, 3 + (std::ranges::find(l.clocks, system) - l.clocks.begin())) = weight;
+      l.H(i, 3 + (std::ranges::find(l.clocks, m.satellite.system) - l.clocks.begin())) = weight;
       l.residual(i) = weight * residual;
     }
     return l;

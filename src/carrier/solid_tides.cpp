@@ -3,6 +3,7 @@
 #include <Eigen/Geometry>
 #include <array>
 #include <cmath>
+#include <numeric>
 
 #include "coast/geo/units.hpp"
 
@@ -120,21 +121,55 @@ Eigen::Vector3d toroidal(const Raised& body, const Point& p) {
   return body.amplitude * (diurnal + semidiurnal);
 }
 
-/// By how much more the diurnal tides near the free core nutation lift than (7.5) has it, m: IERS Conventions (2010) (7.12a),
-/// table 7.3a, in phase. Doodson's tau + s is GMST + pi, hence the minus.
-double resonance(const Point& p, geo::GpsTime t) {
+/// A tide whose Love and Shida numbers are not the nominal ones.
+struct Line {
+  std::array<double, 5> multipliers;     ///< of s, h, p, N', ps; of tau it is 1 for the diurnal, 0 for the zonal tides
+  double radial_in, radial_out;          ///< mm
+  double tangential_in, tangential_out;  ///< mm
+};
+// IERS Conventions (2010) tables 7.3a and 7.3b, the lines of 0.05 mm and more.
+constexpr std::array<Line, 11> kDiurnal{{{{-2, 0, 1, 0, 0}, -0.08, 0.00, -0.01, 0.01},
+                                         {{-1, 0, 0, -1, 0}, -0.10, 0.00, 0.00, 0.00},
+                                         {{-1, 0, 0, 0, 0}, -0.51, 0.00, -0.02, 0.03},  // O1
+                                         {{0, 0, 1, 0, 0}, 0.06, 0.00, 0.00, 0.00},
+                                         {{1, -3, 0, 0, 1}, -0.06, 0.00, 0.00, 0.00},
+                                         {{1, -2, 0, 0, 0}, -1.23, -0.07, 0.06, 0.01},  // P1
+                                         {{1, 0, 0, -1, 0}, -0.22, 0.01, 0.01, 0.00},
+                                         {{1, 0, 0, 0, 0}, 12.00, -0.78, -0.67, -0.03},  // K1
+                                         {{1, 0, 0, 1, 0}, 1.73, -0.12, -0.10, 0.00},
+                                         {{1, 1, 0, 0, -1}, -0.50, -0.01, 0.03, 0.00},
+                                         {{1, 2, 0, 0, 0}, -0.11, 0.01, 0.01, 0.00}}};
+constexpr std::array<Line, 5> kZonal{{{{0, 0, 0, 1, 0}, 0.47, 0.16, 0.23, 0.07},
+                                      {{0, 2, 0, 0, 0}, -0.20, -0.11, -0.12, -0.05},
+                                      {{1, 0, -1, 0, 0}, -0.11, -0.09, -0.08, -0.04},
+                                      {{2, 0, 0, 0, 0}, -0.13, -0.15, -0.11, -0.07},
+                                      {{2, 0, 0, 1, 0}, -0.05, -0.06, -0.05, -0.03}}};
+
+/// What the resonance of the free core nutation and the anelastic mantle make different from (7.5) at single frequencies, m:
+/// IERS Conventions (2010) (7.12), (7.13).
+Eigen::Vector3d by_frequency(const Point& p, geo::GpsTime t) {
   const double T = centuries(t);
-  const double moon = (218.3165 + 481267.8813 * T) * kDegree, sun = (280.4665 + 36000.7698 * T) * kDegree;
-  const double node = (125.0445 - 1934.1363 * T) * kDegree;
-  struct Line {
-    double amplitude;  ///< m
-    double argument;   ///< beside tau + s, rad
+  // Longitudes of Moon, Sun, perigee, minus that of the node, perihelion, of date.
+  const std::array<double, 5> longitudes{218.3165 + 481267.8813 * T, 280.4665 + 36000.7698 * T, 83.3532 + 4069.0137 * T,
+                                         234.9555 + 1934.1363 * T, 282.9373 + 1.7195 * T};
+  const auto argument = [&](const Line& line) {
+    return kDegree * std::inner_product(line.multipliers.begin(), line.multipliers.end(), longitudes.begin(), 0.0);
   };
-  // K1 and what the nodes of the Moon's orbit make of it (N' is minus their longitude), P1, O1.
-  const std::array<Line, 4> lines{{{12.00e-3, 0.0}, {1.73e-3, -node}, {-1.23e-3, -2.0 * sun}, {-0.51e-3, -2.0 * moon}}};
-  double sum = 0.0;
-  for (const Line& line : lines) sum -= line.amplitude * sin(sidereal_time(t) + p.longitude + line.argument);
-  return sum * 2.0 * p.sine * p.cosine;
+  const double tau = sidereal_time(t) + geo::kPi - longitudes[0] * kDegree;
+  const double sin_2lat = 2.0 * p.sine * p.cosine, cos_2lat = p.cosine * p.cosine - p.sine * p.sine;
+  Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+  for (const Line& line : kDiurnal) {
+    const double s = sin(tau + argument(line) + p.longitude), c = cos(tau + argument(line) + p.longitude);
+    sum += (line.radial_in * s + line.radial_out * c) * sin_2lat * p.up +
+           (line.tangential_in * s + line.tangential_out * c) * cos_2lat * p.north +
+           (line.tangential_in * c - line.tangential_out * s) * p.sine * p.east;
+  }
+  for (const Line& line : kZonal) {
+    const double s = sin(argument(line)), c = cos(argument(line));
+    sum += (line.radial_in * c + line.radial_out * s) * (1.5 * p.sine * p.sine - 0.5) * p.up +
+           (line.tangential_in * c + line.tangential_out * s) * sin_2lat * p.north;
+  }
+  return 1e-3 * sum;
 }
 
 }  // namespace
@@ -159,10 +194,10 @@ Eigen::Vector3d moon_e(geo::GpsTime t) {
   const double l = (134.96292 + 477198.86753 * T) * kDegree, ls = (357.52543 + 35999.04944 * T) * kDegree;
   const double f = (93.27283 + 483202.01873 * T) * kDegree, d = (297.85027 + 445267.11135 * T) * kDegree;
   const double d2 = 2.0 * d;
-  const double periodic = 22640.0 * sin(l) + 769.0 * sin(2.0 * l) - 4586.0 * sin(l - d2) + 2370.0 * sin(d2) -
-                          668.0 * sin(ls) - 412.0 * sin(2.0 * f) - 212.0 * sin(2.0 * l - d2) - 206.0 * sin(l + ls - d2) +
-                          192.0 * sin(l + d2) - 165.0 * sin(ls - d2) + 148.0 * sin(l - ls) - 125.0 * sin(d) -
-                          110.0 * sin(l + ls) - 55.0 * sin(2.0 * f - d2);  // arc seconds, as the next
+  const double periodic = 22640.0 * sin(l) + 769.0 * sin(2.0 * l) - 4586.0 * sin(l - d2) + 2370.0 * sin(d2) - 668.0 * sin(ls) -
+                          412.0 * sin(2.0 * f) - 212.0 * sin(2.0 * l - d2) - 206.0 * sin(l + ls - d2) + 192.0 * sin(l + d2) -
+                          165.0 * sin(ls - d2) + 148.0 * sin(l - ls) - 125.0 * sin(d) - 110.0 * sin(l + ls) -
+                          55.0 * sin(2.0 * f - d2);  // arc seconds, as the next
   const double from_node = f + (periodic + 412.0 * sin(2.0 * f) + 541.0 * sin(ls)) * kArcSecond;
   const double latitude = 18520.0 * sin(from_node) - 526.0 * sin(f - d2) + 44.0 * sin(l + f - d2) - 31.0 * sin(f - l - d2) -
                           25.0 * sin(f - 2.0 * l) - 23.0 * sin(ls + f - d2) + 21.0 * sin(f - l) + 11.0 * sin(f - ls - d2);
@@ -173,10 +208,15 @@ Eigen::Vector3d moon_e(geo::GpsTime t) {
 }
 
 Eigen::Vector3d solid_tide(const Eigen::Vector3d& r_e, geo::GpsTime t) {
+  return solid_tide(r_e, t, sun_e(t), moon_e(t));
+}
+
+Eigen::Vector3d solid_tide(const Eigen::Vector3d& r_e, geo::GpsTime t, const Eigen::Vector3d& r_sun_e,
+                           const Eigen::Vector3d& r_moon_e) {
   constexpr double kMoon = 0.0123000371, kSun = 332946.0487;  // masses in that of the Earth, IERS Conventions (2010) table 1.1
   const Point p = point_at(r_e);
-  Eigen::Vector3d displacement = resonance(p, t) * p.up;
-  for (const Raised& body : {raised_by(moon_e(t), kMoon, p), raised_by(sun_e(t), kSun, p)})
+  Eigen::Vector3d displacement = by_frequency(p, t);
+  for (const Raised& body : {raised_by(r_moon_e, kMoon, p), raised_by(r_sun_e, kSun, p)})
     displacement += in_phase(body, p) + out_of_phase(body, p) + toroidal(body, p);
   return displacement;
 }

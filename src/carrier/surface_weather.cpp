@@ -7,6 +7,8 @@
 #include <cstddef>
 #include <numbers>
 
+#include "latitude_table.hpp"
+
 namespace coast::carrier {
 
 namespace {
@@ -123,13 +125,15 @@ double value(const Field& field, const Harmonics& y) {
   return sum;
 }
 
-/// Where the two formulas of the pressure and the vapour still have air.
+/// Where the formulas for the heights still have air.
 double within_the_air(double height) {
   return std::clamp(height, -500.0, 10000.0);
 }
 
-/// On the sea at 15, 30, 45, 60, 75 degrees of latitude: RTCA DO-229D, tables A-2 (average, amplitude).
-using Column = std::array<double, 5>;
+constexpr double kLapse = 0.0065;    // K/m, GPT's
+constexpr double kDryAir = 287.054;  // J/(kg K)
+
+/// On the geoid at 15, 30, 45, 60, 75 degrees of latitude: RTCA DO-229, A.4.2.4.
 struct Vapour {
   Column temperature;  // K
   Column pressure;     // of the vapour, hPa
@@ -145,26 +149,23 @@ constexpr Vapour kAmplitude{{0.0, 7.0, 11.0, 15.0, 14.5},
                             {0.0, 0.25e-3, 0.32e-3, 0.81e-3, 0.62e-3},
                             {0.0, 0.33, 0.46, 0.74, 0.30}};
 
-/// Linear between the latitudes of the tables, constant beyond them.
-double at_latitude(const Column& column, double latitude) {
-  const double at = std::clamp(std::abs(latitude) / (15.0 * kDegree) - 1.0, 0.0, 4.0);
-  const auto below = std::min<std::size_t>(static_cast<std::size_t>(at), 3);
-  return std::lerp(column.at(below), column.at(below + 1), at - static_cast<double>(below));
-}
-
-/// Vapour pressure, hPa, at a height above the geoid; `day` from 28 January.
-double mean_vapour(double latitude, double height, double day) {
-  constexpr double kGravity = 9.80665;     // m/s^2
-  constexpr double kDryAir = 287.054;      // J/(kg K)
+struct MeanVapour {
+  double pressure;  // hPa
+  double decrease;
+};
+/// At a height above the geoid; `day` from 28 January.
+MeanVapour mean_vapour(double latitude, double height, double day) {
+  constexpr double kGravity = 9.80665;     // m/s^2, DO-229's
   constexpr double kSouth = 211.0 - 28.0;  // d, from the northern minimum to the southern
-  // The step at the equator does not matter: the amplitude is zero up to 15 degrees.
+  // The step at the equator does no harm: up to 15 degrees the amplitudes are zero.
   const double season = std::cos(2.0 * kPi * (latitude < 0.0 ? day - kSouth : day) / kYear);
   const auto of_day = [&](const Column Vapour::*column) {
     return at_latitude(kAverage.*column, latitude) - season * at_latitude(kAmplitude.*column, latitude);
   };
   const double lapse = of_day(&Vapour::lapse);
+  const double decrease = of_day(&Vapour::decrease);
   const double cooled = 1.0 - lapse * height / of_day(&Vapour::temperature);
-  return of_day(&Vapour::pressure) * std::pow(cooled, (of_day(&Vapour::decrease) + 1.0) * kGravity / (kDryAir * lapse));
+  return {of_day(&Vapour::pressure) * std::pow(cooled, (decrease + 1.0) * kGravity / (kDryAir * lapse)), decrease};
 }
 
 /// Of water vapour over liquid water, hPa: WMO-No. 8 (2008), annex 4.B.
@@ -181,18 +182,24 @@ double geoid_undulation(const geo::Geodetic& point) {
 SurfaceWeather surface_weather(const geo::Geodetic& point, geo::GpsTime t) {
   const Harmonics y = harmonics(point);
   const double height = within_the_air(point.height) - value(kUndulation, y);
-  const double day = (t - geo::GpsTime{}) / 86400.0 - 22.0;  // from 28 January 1980, as Niell (1996) has the coldest day
+  const double day = (t - geo::GpsTime{}) / 86400.0 - 22.0;  // from 28 January 1980
   const double season = std::cos(2.0 * kPi * day / kYear);
   const double pressure = value(kPressure, y) + season * value(kPressureAmplitude, y);
-  const double celsius = value(kTemperature, y) + season * value(kTemperatureAmplitude, y) - 0.0065 * height;
+  const double celsius = value(kTemperature, y) + season * value(kTemperatureAmplitude, y) - kLapse * height;
+  const MeanVapour vapour = mean_vapour(point.latitude, height, day);
   return {pressure * std::pow(1.0 - 2.26e-5 * height, 5.225), celsius + kFreezing,
-          std::min(mean_vapour(point.latitude, height, day), saturation_pressure(celsius))};
+          std::min(vapour.pressure, saturation_pressure(celsius)), vapour.decrease};
 }
 
 ZenithDelay zenith_delay(const SurfaceWeather& weather, const geo::Geodetic& point) {
+  constexpr double kK2Prime = 16.52;  // K/hPa
+  constexpr double kK3 = 377600.0;    // K^2/hPa
   const double gravity = 1.0 - 0.00266 * std::cos(2.0 * point.latitude) - 2.8e-7 * within_the_air(point.height);
+  // T over this is the scale height of the vapour; K/m.
+  const double decrease = 9.784 * gravity * (weather.vapour_decrease + 1.0) / kDryAir;
+  const double temperature = weather.temperature_k * (1.0 - kLapse / decrease);
   return {0.0022768 * weather.pressure_hpa / gravity,
-          0.002277 * (1255.0 / weather.temperature_k + 0.05) * weather.vapour_pressure_hpa};
+          1e-6 * (kK2Prime + kK3 / temperature) * weather.vapour_pressure_hpa / decrease};
 }
 
 }  // namespace coast::carrier

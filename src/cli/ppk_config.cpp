@@ -1,5 +1,8 @@
 #include "ppk_config.hpp"
 
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
 #include <array>
 
 #include "coast/geo/earth.hpp"
@@ -32,18 +35,48 @@ std::vector<std::filesystem::path> paths(const Node& node) {
   return all;
 }
 
+Eigen::Vector3d given_position(const Node& node) {
+  const auto ecef = node.find("ecef_m");
+  if (!ecef) return geo::ecef_from_geodetic(geodetic_from(node.at("geodetic_deg_m")));
+  constexpr double kLeast = 6.2e6, kMost = 7e6;  // m from the Earth's centre
+  const double radius = ecef->vector3().norm();
+  if (!(radius > kLeast && radius < kMost)) throw ecef->error("a point not on the Earth", "x, y, z in m, ECEF");
+  return ecef->vector3();
+}
+
+double epoch_of(const Node& node) {
+  constexpr double kFirst = 1980.0, kLast = 2100.0;
+  const Node epoch = node.at("epoch");
+  const double year = epoch.number();
+  if (!(year >= kFirst && year <= kLast)) throw epoch.error(fmt::format("{:g}", year), "a decimal year from 1980 to 2100");
+  return year;
+}
+
+/// Reference frame, epoch, and the marker's velocity or the plate that it rides on.
+carrier::BaseAt::Datum datum(const Node& node, const Eigen::Vector3d& r_e) {
+  const Node frame = node.at("frame");
+  const auto name = geo::frame_of(frame.text());
+  if (!name) throw frame.error("reference frame " + frame.text(), fmt::format("one of {}", fmt::join(geo::frames(), ", ")));
+  carrier::BaseAt::Datum datum{{*name, epoch_of(node)}, Eigen::Vector3d::Zero()};
+  if (const auto velocity = node.find("velocity_mpy")) {
+    datum.velocity_mpy = velocity->vector3();
+    return datum;
+  }
+  const Node plate = node.at("plate");
+  const auto moved = geo::plate_velocity(plate.text(), r_e, *name);
+  if (!moved) throw plate.error("plate " + plate.text(), fmt::format("one of {}", fmt::join(geo::plates(), ", ")));
+  datum.velocity_mpy = *moved;
+  return datum;
+}
+
 carrier::BaseAt base_position(const Node& map) {
   using carrier::BaseAt;
   constexpr std::array kHows{BaseAt::How::kHeader, BaseAt::How::kAverage, BaseAt::How::kMoving};
   const auto node = map.find("base_position");
-  if (!node || !node->is_map()) return {kHows[map.choice("base_position", {"header", "average", "moving"}, 0)], {}};
-  if (const auto ecef = node->find("ecef_m")) {
-    constexpr double kLeast = 6.2e6, kMost = 7e6;  // m from the Earth's centre
-    const double radius = ecef->vector3().norm();
-    if (!(radius > kLeast && radius < kMost)) throw ecef->error("a point not on the Earth", "x, y, z in m, ECEF");
-    return {BaseAt::How::kGiven, ecef->vector3()};
-  }
-  return {BaseAt::How::kGiven, geo::ecef_from_geodetic(geodetic_from(node->at("geodetic_deg_m")))};
+  if (!node || !node->is_map()) return {kHows[map.choice("base_position", {"header", "average", "moving"}, 0)], {}, {}};
+  BaseAt given{BaseAt::How::kGiven, given_position(*node), std::nullopt};
+  if (node->find("frame")) given.datum = datum(*node, given.r_e);
+  return given;
 }
 
 std::set<SatelliteSystem> systems(const Node& map, std::set<SatelliteSystem> otherwise) {
@@ -105,8 +138,10 @@ PpkConfig PpkConfig::from(const Node& map) {
   o.differences.systems = systems(map, o.differences.systems);
   o.differences.elevation_mask = geo::kDegree * map.number_within("elevation_mask_deg", 10.0, 0.0, 60.0);
   o.differences.longest_base_gap_s = map.number_within("longest_base_gap_s", o.differences.longest_base_gap_s, 0.0, 3600.0);
-  o.differences.air.troposphere = map.choice("troposphere", {"standard", "none"}, 0) == 0;
-  config.broadcast_ionosphere = map.choice("ionosphere", {"broadcast", "none"}, 0) == 0;
+  o.differences.air.troposphere = map.choice("troposphere", {"global", "none"}, 0) == 0;
+  const std::size_t ionosphere = map.choice("ionosphere", {"broadcast", "none", "free"}, 0);
+  config.broadcast_ionosphere = ionosphere == 0;
+  o.differences.air.ionosphere_free = ionosphere == 2;
   o.motion =
       map.choice("motion", {"kinematic", "static"}, 0) == 0 ? carrier::RoverMotion::kKinematic : carrier::RoverMotion::kStatic;
   constexpr std::array kOrders{carrier::PassOrder::kCombined, carrier::PassOrder::kForward, carrier::PassOrder::kBackward};

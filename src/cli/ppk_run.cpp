@@ -35,10 +35,8 @@ void add_channels(const record::NavigationRecording& navigation, ObservationReco
 }
 
 /// The calibrations of both antennas. Where one has none neither is used: what both have in common would no longer cancel.
-void add_antennas(const std::filesystem::path& file, const ObservationRecording& rover, const ObservationRecording& base,
+void add_antennas(const record::AntennaTable& table, const ObservationRecording& rover, const ObservationRecording& base,
                   carrier::DifferenceOptions& options, record::Events& events) {
-  const record::AntennaTable table = io::read_antex(file);
-  append(table.events, events);
   const record::AntennaCalibration* of_rover = carrier::find_antenna(table, rover.antenna);
   const record::AntennaCalibration* of_base = carrier::find_antenna(table, base.antenna);
   if (of_rover != nullptr && of_base != nullptr) {
@@ -70,7 +68,11 @@ PpkResult run_ppk(const PpkConfig& config, const std::function<void(double)>& pr
   add_channels(navigation, base);
   const carrier::BroadcastOrbits broadcast(navigation);
   const std::unique_ptr<const carrier::Orbits> precise = precise_orbits(config, result.events);
-  const carrier::Orbits& orbits = precise ? *precise : static_cast<const carrier::Orbits&>(broadcast);
+  const record::AntennaTable antennas = config.antex ? io::read_antex(*config.antex) : record::AntennaTable{};
+  append(antennas.events, result.events);
+  std::optional<carrier::PhaseCentredOrbits> centred;
+  if (precise) centred.emplace(*precise, antennas);
+  const carrier::Orbits& orbits = centred ? static_cast<const carrier::Orbits&>(*centred) : broadcast;
   carrier::PpkOptions options = config.options;
   if (config.broadcast_ionosphere) options.differences.air.ionosphere = navigation.gps_ionosphere;
   result.rover = in_words(rover);
@@ -78,7 +80,7 @@ PpkResult run_ppk(const PpkConfig& config, const std::function<void(double)>& pr
   const carrier::KnownBase known = carrier::known_base(config.base_at, base, orbits, options.differences);
   result.r_base_e = known.r_e;
   result.base_from = known.from;
-  if (config.antex) add_antennas(*config.antex, rover, base, options.differences, result.events);
+  if (config.antex) add_antennas(antennas, rover, base, options.differences, result.events);
   result.solution = carrier::solve_ppk(rover, base, orbits, known.at, options, progress);
   result.options = std::move(options);
   result.fixes = carrier::to_fixes(result.solution, config.rover.string());

@@ -40,7 +40,7 @@ CarrierObservations carrier_observations(carrier::PpkSolution solution, const ca
   observations.options = options;
   // Over minutes the smoother averages phases to less than what the air does over the shortest baselines.
   const bool air = options.differences.air.troposphere;
-  observations.options.air = carrier::AirStates{air, air};
+  observations.options.air = carrier::AirStates{air, air, solution.air.unbounded};
   observations.options.noise = solution.noise;
   observations.interval_s = solution.interval_s;
   observations.most_unknowns = carrier::most_unknowns(solution.differences, observations.options, solution.interval_s);

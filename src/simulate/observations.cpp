@@ -12,6 +12,7 @@
 #include "coast/carrier/atmosphere.hpp"
 #include "coast/carrier/orbits.hpp"
 #include "coast/carrier/signals.hpp"
+#include "coast/carrier/surface_weather.hpp"
 #include "coast/geo/units.hpp"
 #include "constellation.hpp"
 #include "random.hpp"
@@ -140,7 +141,7 @@ std::optional<Receiver::Way> Receiver::way(Satellite satellite, double t, const 
   w.direction = carrier::direction_of(r_satellite_e, r_e);
   if (w.direction.elevation < options_.elevation_mask) return std::nullopt;
   const geo::Geodetic receiver = geo::geodetic_from_ecef(r_e);
-  const carrier::ZenithDelay zenith = carrier::standard_zenith_delay(receiver);
+  const carrier::ZenithDelay zenith = carrier::zenith_delay(carrier::surface_weather(receiver, start_ + t), receiver);
   const carrier::TroposphericMapping mapping = carrier::niell_mapping(receiver, w.direction.elevation, start_ + t);
   w.metres =
       kSpeedOfLight * (tau - state.clock_s) + mapping.hydrostatic * zenith.hydrostatic + mapping.wet * (zenith.wet + wet);

@@ -1,10 +1,11 @@
-// Carrier-phase positions against the truth of simulated missions. The simulator shares orbits and a standard atmosphere with
+// Carrier-phase positions against the truth of simulated missions. The simulator shares orbits and a mean atmosphere with
 // the solver; light times, clocks, ambiguities, noise and slips are its own.
 
 #include "coast/carrier/ppk.hpp"
 
 #include "coast/carrier/base_position.hpp"
 #include "coast/carrier/signals.hpp"
+#include "coast/carrier/solid_tides.hpp"
 
 #include <gtest/gtest.h>
 
@@ -149,6 +150,56 @@ TEST(Ppk, EstimatesTheIonosphereOverLongBaselines) {
   EXPECT_LE(e.wrong, solution.epochs.size() / 100);
 }
 
+// Nothing is known of the ionosphere beforehand: 25 m of delay over 25 km, a storm, is as good as none.
+TEST(Ppk, IonosphereFreeStandsWhateverIonosphere) {
+  simulate::ObservationOptions options;
+  options.base_n = {25000.0, 0.0, 0.0};
+  options.code_multipath_sd = 0.1;
+  options.phase_multipath_sd = 0.0005;
+  options.wet_zenith_sd = 0.0;
+  std::array<double, 2> rms{};
+  for (const bool storm : {false, true}) {
+    options.ionosphere_gradient = storm ? 1e-3 : 0.0;
+    const SimulatedBaseline mission("car_roundabout", 500.0, options);
+    PpkOptions ppk;
+    ppk.differences.air.ionosphere_free = true;
+    ppk.fixing.wanted = false;
+    ppk.noise = NoiseScale{};
+    const PpkSolution solution = mission.solve(ppk);
+    EXPECT_TRUE(solution.air.unbounded);
+    double squares = 0.0;
+    for (const PpkEpoch& epoch : solution.epochs) squares += (epoch.r_e - mission.truth(epoch.t).r_eb_e).squaredNorm();
+    rms.at(storm ? 1 : 0) = std::sqrt(squares / static_cast<double>(solution.epochs.size()));
+  }
+  EXPECT_LT(rms[0], 1.0);
+  EXPECT_NEAR(rms[1], rms[0], 0.05);
+}
+
+TEST(Ppk, TakesTheTideOffOverLongBaselines) {
+  simulate::ObservationOptions options = error_free();
+  options.base_n = {90000.0, 0.0, 0.0};
+  SimulatedBaseline mission("car_roundabout", 360.0, options);
+  mission.observed.rover.approximate_r_e = mission.truth(mission.start).r_eb_e;
+  PpkOptions ppk;
+  ppk.noise = NoiseScale{};
+  const PpkSolution solution = mission.solve(ppk);
+  Eigen::Vector3d mean = Eigen::Vector3d::Zero();
+  double fixed = 0.0;
+  for (const PpkEpoch& epoch : solution.epochs) {
+    if (epoch.quality != FixQuality::kFixed) continue;
+    mean += epoch.r_e - mission.truth(epoch.t).r_eb_e;
+    fixed += 1.0;
+  }
+  ASSERT_GT(fixed, 100.0);
+  mean /= fixed;
+  // The simulated Earth is rigid: what is taken off is seen.
+  const geo::GpsTime t = mission.start + 150.0;
+  const Eigen::Vector3d expected =
+      solid_tide(mission.observed.r_base_e, t) - solid_tide(*mission.observed.rover.approximate_r_e, t);
+  EXPECT_GT(expected.norm(), 0.003);
+  EXPECT_LT((mean - expected).norm(), 0.0005);
+}
+
 TEST(Ppk, NoiseScalesFollowTheNoise) {
   simulate::ObservationOptions quiet;
   quiet.code_multipath_sd = quiet.phase_multipath_sd = quiet.ionosphere_gradient = quiet.wet_zenith_sd = 0.0;
@@ -200,6 +251,24 @@ TEST(Ppk, KnowsTheBaseByWhateverTellsIt) {
     EXPECT_LT((above(known_base(base_at, base, orbits, {})) - Eigen::Vector3d(-0.2, 0.1, -1.5)).norm(), 1e-8);
   base.approximate_r_e.reset();
   EXPECT_THROW(static_cast<void>(known_base({BaseAt::How::kHeader, {}}, base, orbits, {})), InputError);
+}
+
+// A station's sheet states ETRF2000 at 2010; Europe drifts by 2.5 cm a year in ITRF, ETRF by nothing.
+TEST(Ppk, BringsTheBaseFromItsFrameAndEpoch) {
+  SimulatedBaseline mission("car_roundabout", 360.0, error_free());
+  const record::ObservationRecording& base = mission.observed.base;
+  const BroadcastOrbits orbits(mission.observed.navigation);
+  const Eigen::Vector3d r_e = mission.observed.r_base_e;
+  const geo::FrameEpoch sheet{"ETRF2000", 2010.0};
+  const double year = 2025.0 + 189.4 / 365.0;  // 8 July 2025, 10 h
+  const auto velocity = geo::plate_velocity("EURA", r_e, sheet.frame);
+  ASSERT_TRUE(velocity);
+  const BaseAt base_at{BaseAt::How::kGiven, r_e, BaseAt::Datum{sheet, *velocity}};
+  const Eigen::Vector3d moved = known_base(base_at, base, orbits, {}).r_e - r_e;
+  const Eigen::Vector3d expected = geo::transform(r_e, sheet, {"ITRF2020", year}, *velocity) - r_e;
+  EXPECT_LT((moved - expected).norm(), 1e-4);  // a day of 2.5 cm a year
+  // 36.4 years after 1989, when both were one, at 2.5 cm a year: 0.9 m.
+  EXPECT_NEAR(moved.norm(), 0.9, 0.1);
 }
 
 TEST(Ppk, SaysWhatIsMissing) {

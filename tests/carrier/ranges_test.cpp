@@ -1,6 +1,7 @@
 // The way of a signal: against the same way in inertial axes, and what stands in the standards.
 
 #include "coast/carrier/ranges.hpp"
+#include "coast/carrier/surface_weather.hpp"
 
 #include <gtest/gtest.h>
 
@@ -67,7 +68,7 @@ TEST(SignalPath, IsTheDistanceInInertialAxes) {
   EXPECT_NEAR(path.modelled(*satellite), range - kSpeedOfLight * 3e-4, 1e-5);
   EXPECT_EQ(path.troposphere, 0.0);
   const SignalPath with_air = path_to(*satellite, r_e, receiver, t0, true);
-  const ZenithDelay zenith = standard_zenith_delay(receiver);
+  const ZenithDelay zenith = zenith_delay(surface_weather(receiver, t0), receiver);
   // Saastamoinen over the sine of the elevation, to 2 % above 20 degrees.
   ASSERT_GT(path.direction.elevation, 20.0 * geo::kDegree);
   const double expected = (zenith.hydrostatic + zenith.wet) / std::sin(path.direction.elevation);

@@ -44,7 +44,7 @@ struct SimulatedBaseline {
   }
 };
 
-/// Nothing but geometry, clocks and a standard atmosphere.
+/// Nothing but geometry, clocks and a mean atmosphere.
 inline simulate::ObservationOptions error_free() {
   simulate::ObservationOptions options;
   options.code_sd = options.phase_sd = options.code_multipath_sd = options.phase_multipath_sd = 0.0;

@@ -163,14 +163,21 @@ TEST_P(SpoiledPpkFile, EndsWithStatusTwoAndSaysWhat) {
 
 INSTANTIATE_TEST_SUITE_P(
     PpkCommand, SpoiledPpkFile,
-    testing::Values(SpoiledPpk{"unknown key", "motion:", "moton:", "moton"}, SpoiledPpk{"no rover", "rover:", "#", "rover"},
-                    SpoiledPpk{"a word", "kinematic", "flying", "flying"},
-                    SpoiledPpk{"a base in space", "header", "{ecef_m: [1, 2, 3]}", "not on the Earth"},
-                    SpoiledPpk{"a base of two numbers", "header", "{ecef_m: [1, 2]}", "ecef_m"},
-                    SpoiledPpk{"a missing file", "rover.obs", "rovr.obs", "rovr.obs"},
-                    SpoiledPpk{"navigation for observations", "rover.obs", "brdc.nav", "brdc.nav"},
-                    SpoiledPpk{"observations for navigation", "brdc.nav", "base.obs", "base.obs"},
-                    SpoiledPpk{"no system in common", "motion: kinematic", "systems: [glonass]", "no signal"}),
+    testing::Values(
+        SpoiledPpk{"unknown key", "motion:", "moton:", "moton"}, SpoiledPpk{"no rover", "rover:", "#", "rover"},
+        SpoiledPpk{"a word", "kinematic", "flying", "flying"},
+        SpoiledPpk{"a base in space", "header", "{ecef_m: [1, 2, 3]}", "not on the Earth"},
+        SpoiledPpk{"a base of two numbers", "header", "{ecef_m: [1, 2]}", "ecef_m"},
+        SpoiledPpk{"a frame that nobody knows", "header", "{ecef_m: [4365683, 503817, 4607565], frame: ITRF1800, epoch: 2020}",
+                   "one of"},
+        SpoiledPpk{"a frame without an epoch", "header", "{ecef_m: [4365683, 503817, 4607565], frame: ITRF2014}", "epoch"},
+        SpoiledPpk{"a plate that nobody knows", "header",
+                   "{ecef_m: [4365683, 503817, 4607565], frame: ITRF2014, epoch: 2020, plate: ATLANTIS}", "EURA"},
+        SpoiledPpk{"an epoch without a frame", "header", "{ecef_m: [4365683, 503817, 4607565], epoch: 2020}", "epoch"},
+        SpoiledPpk{"a missing file", "rover.obs", "rovr.obs", "rovr.obs"},
+        SpoiledPpk{"navigation for observations", "rover.obs", "brdc.nav", "brdc.nav"},
+        SpoiledPpk{"observations for navigation", "brdc.nav", "base.obs", "base.obs"},
+        SpoiledPpk{"no system in common", "motion: kinematic", "systems: [glonass]", "no signal"}),
     [](const testing::TestParamInfo<SpoiledPpk>& spoiled) { return fmt::format("n{}", spoiled.index); });
 
 TEST(PpkCommand, EveryShippedFileIsSolved) {

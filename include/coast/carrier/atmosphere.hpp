@@ -21,14 +21,11 @@ struct Direction {
 [[nodiscard]] double klobuchar_delay(const record::Klobuchar& model, const geo::Geodetic& receiver, const Direction& direction,
                                      geo::GpsTime t);
 
-/// Delay at the zenith, m.
+/// Delay at the zenith, m; by surface_weather.hpp.
 struct ZenithDelay {
   double hydrostatic = 0.0;
   double wet = 0.0;
 };
-/// Saastamoinen (1972) with the pressure, temperature and humidity of a standard atmosphere (ISO 2533, 70 % at sea level): good
-/// to 1 cm hydrostatic in fair weather, 5 cm wet. Heights beyond 10 km above or 500 m below the ellipsoid are taken as these.
-[[nodiscard]] ZenithDelay standard_zenith_delay(const geo::Geodetic& receiver);
 
 /// How much more air the signal passes than one from the zenith (Niell 1996), down to 3 degrees of elevation.
 struct TroposphericMapping {

@@ -4,6 +4,7 @@
 #include <string>
 
 #include "coast/carrier/differences.hpp"
+#include "coast/geo/reference_frame.hpp"
 
 namespace coast::carrier {
 
@@ -11,6 +12,13 @@ struct BaseAt {
   /// kAverage: the mean of its own single-point positions, metres off; kMoving: these, epoch by epoch.
   enum class How { kGiven, kHeader, kAverage, kMoving } how = How::kHeader;
   Eigen::Vector3d r_e = Eigen::Vector3d::Zero();  ///< marker, ECEF, m, of kGiven
+  /// What the position refers to, and how fast the marker moves in it, m/year. Stated, the position is brought to ITRF2020,
+  /// which today's orbits are in to centimetres, at the time of the mission; and the rover's come out there.
+  struct Datum {
+    geo::FrameEpoch at;
+    Eigen::Vector3d velocity_mpy = Eigen::Vector3d::Zero();
+  };
+  std::optional<Datum> datum = std::nullopt;
 };
 
 struct KnownBase {

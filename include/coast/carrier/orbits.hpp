@@ -5,6 +5,7 @@
 #include <optional>
 #include <vector>
 
+#include "coast/record/antenna.hpp"
 #include "coast/record/navigation.hpp"
 #include "coast/record/precise_orbits.hpp"
 
@@ -57,8 +58,8 @@ class BroadcastOrbits : public Orbits {
 
 /// Orbits and clocks of the analysis centres: positions by a polynomial through ten points of the table (Schenewerk 2003),
 /// clocks linearly between those of the clock files or, without, of the orbit files; relativity's periodic part is added
-/// (IS-GPS-200 20.3.3.3.3.1). Positions are of the centre of mass: phase centres lie up to 3 m closer to the Earth, which
-/// differences over baselines do not feel.
+/// (IS-GPS-200 20.3.3.3.3.1). Positions are of the centre of mass: phase centres (PhaseCentredOrbits) lie up to 3 m closer to
+/// the Earth, a millimetre over 10 km.
 class PreciseEphemerides : public Orbits {
  public:
   /// @param clocks  may be empty
@@ -69,6 +70,27 @@ class PreciseEphemerides : public Orbits {
  private:
   record::PreciseOrbits orbits_;
   record::PreciseClocks clocks_;
+};
+
+/// Axes of a satellite that steers its yaw, as columns, in ECEF: z to the geocentre, y along its panels, z x Sun, x to the side
+/// of the Sun (Montenbruck et al. 2015, the IGS convention); without the turns at noon, midnight and in shadow.
+[[nodiscard]] Eigen::Matrix3d yaw_steering_axes(const Eigen::Vector3d& r_satellite_e, const Eigen::Vector3d& r_sun_e);
+
+/// Orbits of centres of mass carried to the antennas' phase centres by the satellites' calibrations of the time (ANTEX), to the
+/// ionosphere-free one of the first two bands, which clocks of the analysis centres refer to. Satellites without stay.
+class PhaseCentredOrbits : public Orbits {
+ public:
+  /// @param centres_of_mass  must outlive this
+  PhaseCentredOrbits(const Orbits& centres_of_mass, const record::AntennaTable& table);
+  [[nodiscard]] std::optional<SatelliteState> at(record::Satellite satellite, geo::GpsTime t) const override;
+
+ private:
+  struct Offset {
+    std::optional<geo::GpsTime> from, until;
+    Eigen::Vector3d value;  ///< body axes, m
+  };
+  const Orbits& centres_of_mass_;
+  std::map<record::Satellite, std::vector<Offset>> offsets_;
 };
 
 }  // namespace coast::carrier

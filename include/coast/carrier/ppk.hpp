@@ -37,8 +37,9 @@ struct NoiseScale {
 
 /// What the air does differently above rover and base, as states beside position and ambiguities.
 struct AirStates {
-  bool ionosphere = false;    ///< slant delay of each satellite
+  bool ionosphere = false;    ///< slant delay of each satellite, of which the baseline says how large it may be
   bool zenith_delay = false;  ///< wet troposphere, rover's less base's
+  bool unbounded = false;     ///< nothing is known of the slant delays beforehand: ionosphere-free
 };
 
 enum class PassOrder { kForward, kBackward, kCombined };

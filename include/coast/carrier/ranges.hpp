@@ -8,8 +8,12 @@ namespace coast::carrier {
 
 /// Which of the air's delays are modelled.
 struct AirModel {
-  bool troposphere = true;
+  bool troposphere = true;                      ///< zenith_delay of the surface_weather, mapped after Niell
   std::optional<record::Klobuchar> ionosphere;  ///< for codes of a single receiver; differences over baselines leave it out
+  /// Ionosphere-free: single points by codes of two bands in which it cancels; of differences every satellite has its slant
+  /// delay as a state of which nothing is known beforehand, which tells what the ionosphere-free combination does and keeps the
+  /// ambiguities integers.
+  bool ionosphere_free = false;
 };
 
 /// The satellite when it sent what the receiver got at t, in the ECEF of that time. A pseudorange is the difference of what

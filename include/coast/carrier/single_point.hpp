@@ -15,8 +15,9 @@ struct CodeMeasurement {
   record::Satellite satellite;
   SatelliteState state;              ///< at transmission
   double code = 0.0;                 ///< m
-  double iono_factor = 1.0;          ///< (f1/f)^2
+  double iono_factor = 1.0;          ///< (f1/f)^2; 0 of a combination without ionosphere
   std::optional<double> range_rate;  ///< m/s, from Doppler: grows with range
+  double noise = 1.0;                ///< sd over that of a single code
 };
 
 struct SinglePoint {
