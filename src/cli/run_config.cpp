@@ -173,6 +173,10 @@ void read_gnss(const Node& gnss, RunConfig& run, estimate::NoiseFitChoice& choic
     throw gnss.at("coupling")
         .error("tight coupling of positions", "gnss: {ppk: ..}",
                "Tight coupling takes the observations of a rover and a base.");
+  if (run.tight && run.ppk->base_at.how == carrier::BaseAt::How::kMoving)
+    throw gnss.at("coupling")
+        .error("tight coupling with a moving base", "a base at rest, or coupling: loose",
+               "Where a moving base is, is known to metres only.");
   run.setup.time_offset_s = gnss.number_within("time_offset_s", 0.0, -100.0, 100.0);
   run.setup.filter.auxiliary.time_offset_sd_s = gnss.number_within("time_offset_sd_s", 0.0, 0.0, 10.0);
   run.setup.filter.use_gnss_velocity = gnss.flag("use_velocity", true);

@@ -7,6 +7,7 @@
 #include "coast/carrier/ppk.hpp"
 #include "coast/geo/units.hpp"
 #include "coast/io/input.hpp"
+#include "coast/io/products.hpp"
 #include "coast/io/rinex.hpp"
 #include "support/support.hpp"
 
@@ -133,6 +134,46 @@ TEST_F(PpkRecordings, StaticRoverOfTheSimulatedConstellation) {
     EXPECT_EQ(epoch.quality, FixQuality::kFixed);
     EXPECT_LT((epoch.r_e - Eigen::Vector3d(4156857.1195929, 673209.028774142, 4774767.03105544)).norm(), 1e-3);
   }
+}
+
+/// Median error in space, m, of a day of single points every ten minutes.
+double median_error(const record::ObservationRecording& receiver, const Orbits& orbits, const DifferenceOptions& options,
+                    const Eigen::Vector3d& r_e) {
+  std::vector<double> errors;
+  for (const auto& point : single_points(receiver, orbits, options))
+    if (point) errors.push_back((point->r_e - r_e).norm());
+  EXPECT_GT(errors.size(), 130U);
+  const auto middle = errors.begin() + static_cast<std::ptrdiff_t>(errors.size() / 2);
+  std::ranges::nth_element(errors, middle);
+  return *middle;
+}
+
+// Two codes have three times the noise of one, and biases of signals are not taken off: a metre with products and no
+// ionosphere; three with broadcast orbits, half of the ionosphere and the satellites' group delays.
+TEST_F(PpkRecordings, ProductsAndIonosphereFreeCodesPlaceAStation) {
+  const auto folder = *test::data_dir() / "rinex-esbc-2020-177";
+  record::ObservationRecording receiver = io::read_observations(folder / "ESBC00DNK_R_20201770000_01D_30S_MO.crx.gz");
+  std::vector<record::ObservationEpoch> thinned;
+  for (std::size_t i = 0; i < receiver.epochs.size(); i += 20) thinned.push_back(receiver.epochs[i]);
+  receiver.epochs = std::move(thinned);
+  const Eigen::Vector3d marker_e = *receiver.approximate_r_e;
+  const Eigen::Vector3d r_e = marker_e + receiver.antenna_offset_enu.z() * marker_e.normalized();
+  const record::NavigationRecording navigation = io::read_navigation({folder / "ESBC00DNK_R_20201770000_01D_MN.rnx.gz"});
+  DifferenceOptions options;
+  options.systems = {record::SatelliteSystem::kGps, record::SatelliteSystem::kGalileo};
+  options.air.ionosphere = navigation.gps_ionosphere;
+  const double broadcast = median_error(receiver, BroadcastOrbits(navigation), options, r_e);
+  const PreciseEphemerides precise(io::read_sp3({folder / "GRG0MGXFIN_20201760000_01D_15M_ORB.SP3.gz",
+                                                 folder / "GRG0MGXFIN_20201770000_01D_15M_ORB.SP3.gz"}),
+                                   io::read_clocks({folder / "GRG0MGXFIN_20201770000_01D_30S_CLK.CLK.gz"}));
+  options.air.ionosphere.reset();
+  options.air.ionosphere_free = true;
+  const double products = median_error(receiver, precise, options, r_e);
+  RecordProperty("broadcast", std::to_string(broadcast));
+  RecordProperty("products", std::to_string(products));
+  EXPECT_LT(broadcast, 4.0);
+  EXPECT_LT(products, 1.5);
+  EXPECT_LT(products, 0.5 * broadcast);
 }
 
 }  // namespace

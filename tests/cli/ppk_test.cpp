@@ -118,7 +118,15 @@ class SpoiledCouplings : public testing::TestWithParam<SpoiledCoupling> {};
 
 TEST_P(SpoiledCouplings, EndWithStatusTwoAndSayWhat) {
   const test::TemporaryDirectory folder;
-  const fs::path yaml = run_file(folder.path(), GetParam().gnss, GetParam().outages);
+  fs::path yaml;
+  if (std::string(GetParam().outages) == "moving") {
+    std::string text = text_of(run_file(folder.path(), GetParam().gnss, ""));
+    text.replace(text.find("{ecef_m"), text.find("]}", text.find("{ecef_m")) + 2 - text.find("{ecef_m"), "moving");
+    write(folder.path() / "moving.yaml", text);
+    yaml = folder.path() / "moving.yaml";
+  } else {
+    yaml = run_file(folder.path(), GetParam().gnss, GetParam().outages);
+  }
   const Outcome outcome = run(fmt::format("process '{}'", yaml.string()), folder.path());
   EXPECT_EQ(outcome.status, 2) << outcome.error;
   EXPECT_NE(outcome.error.find(GetParam().message), std::string::npos) << outcome.error;
@@ -128,6 +136,7 @@ INSTANTIATE_TEST_SUITE_P(
     PpkCommand, SpoiledCouplings,
     testing::Values(SpoiledCoupling{"coupling: close, ", "", "loose"},
                     SpoiledCoupling{"coupling: tight, noise: estimated, ", "", "does not use"},
+                    SpoiledCoupling{"coupling: tight, ", "moving", "moving base"},
                     SpoiledCoupling{"", "outages: [{start_s: 208920, duration_s: 30, satellites: 3}]\n", "partial outage"},
                     SpoiledCoupling{"coupling: tight, ", "outages: [{start_s: 208920, duration_s: 30, satellites: -1}]\n",
                                     "-1 satellites"}),
