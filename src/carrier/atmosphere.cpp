@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <stdexcept>
 
 #include "latitude_table.hpp"
@@ -12,9 +11,6 @@
 namespace coast::carrier {
 
 namespace {
-
-constexpr double kPi = std::numbers::pi;
-constexpr double kDegree = kPi / 180.0;
 
 /// Marini's continued fraction in Herring's form: 1 at the zenith.
 double continued_fraction(double sine, double a, double b, double c) {
@@ -41,7 +37,7 @@ constexpr double kHeightA = 2.53e-5, kHeightB = 5.49e-3, kHeightC = 1.14e-3;
 Direction direction_of(const Eigen::Vector3d& r_satellite_e, const Eigen::Vector3d& r_receiver_e) {
   const Eigen::Vector3d ned = geo::C_n_e(geo::geodetic_from_ecef(r_receiver_e)).transpose() * (r_satellite_e - r_receiver_e);
   const double azimuth = std::atan2(ned.y(), ned.x());
-  return {azimuth < 0.0 ? azimuth + 2.0 * kPi : azimuth, std::atan2(-ned.z(), std::hypot(ned.x(), ned.y()))};
+  return {azimuth < 0.0 ? azimuth + 2.0 * geo::kPi : azimuth, std::atan2(-ned.z(), std::hypot(ned.x(), ned.y()))};
 }
 
 double klobuchar_delay(const record::Klobuchar& model, const geo::Geodetic& receiver, const Direction& direction,
@@ -49,11 +45,12 @@ double klobuchar_delay(const record::Klobuchar& model, const geo::Geodetic& rece
   constexpr double kLight = 299792458.0;
   constexpr double kDay = 86400.0;
   // Angles in semicircles, as the model was published.
-  const double elevation = direction.elevation / kPi;
+  const double elevation = direction.elevation / geo::kPi;
   const double central = 0.0137 / (elevation + 0.11) - 0.022;
-  const double latitude = std::clamp(receiver.latitude / kPi + central * std::cos(direction.azimuth), -0.416, 0.416);
-  const double longitude = receiver.longitude / kPi + central * std::sin(direction.azimuth) / std::cos(latitude * kPi);
-  const double magnetic = latitude + 0.064 * std::cos((longitude - 1.617) * kPi);
+  const double latitude = std::clamp(receiver.latitude / geo::kPi + central * std::cos(direction.azimuth), -0.416, 0.416);
+  const double longitude =
+      receiver.longitude / geo::kPi + central * std::sin(direction.azimuth) / std::cos(latitude * geo::kPi);
+  const double magnetic = latitude + 0.064 * std::cos((longitude - 1.617) * geo::kPi);
   const double local = std::fmod(std::fmod(kDay / 2.0 * longitude + t.sow(), kDay) + kDay, kDay);
   const double obliquity = 1.0 + 16.0 * std::pow(0.53 - elevation, 3);
   double amplitude = 0.0;
@@ -62,19 +59,19 @@ double klobuchar_delay(const record::Klobuchar& model, const geo::Geodetic& rece
     amplitude = amplitude * magnetic + model.alpha.at(i);
     period = period * magnetic + model.beta.at(i);
   }
-  const double phase = 2.0 * kPi * (local - 50400.0) / std::max(period, 72000.0);
+  const double phase = 2.0 * geo::kPi * (local - 50400.0) / std::max(period, 72000.0);
   constexpr double kNight = 5e-9;  // s
   const double cosine = std::abs(phase) < 1.57 ? 1.0 - phase * phase * (0.5 - phase * phase / 24.0) : 0.0;
   return kLight * obliquity * (kNight + std::max(amplitude, 0.0) * cosine);
 }
 
 TroposphericMapping niell_mapping(const geo::Geodetic& receiver, double elevation, geo::GpsTime t) {
-  if (!(elevation >= kDegree))
-    throw std::invalid_argument(fmt::format("niell_mapping: an elevation of {:.2f} degrees", elevation / kDegree));
+  if (!(elevation >= geo::kDegree))
+    throw std::invalid_argument(fmt::format("niell_mapping: an elevation of {:.2f} degrees", elevation / geo::kDegree));
   const geo::Calendar date = t.calendar();
   const double day = (t - geo::GpsTime::from_calendar({date.year, 1, 1, 0, 0, 0.0})) / 86400.0 + 1.0;
   constexpr double kColdest = 28.0;  // day of the year in the north
-  const double season = std::cos(2.0 * kPi * (day - kColdest) / 365.25) * (receiver.latitude < 0.0 ? -1.0 : 1.0);
+  const double season = std::cos(2.0 * geo::kPi * (day - kColdest) / 365.25) * (receiver.latitude < 0.0 ? -1.0 : 1.0);
   const auto hydrostatic = [&](const Column Coefficients::*column) {
     return at_latitude(kAverage.*column, receiver.latitude) - season * at_latitude(kAmplitude.*column, receiver.latitude);
   };

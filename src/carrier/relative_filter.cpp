@@ -261,7 +261,7 @@ void RelativeFilter::update(const DifferenceEpoch& epoch, FloatEpoch& result) {
 
 Eigen::VectorXd RelativeFilter::absorb(const Innovation& in) {
   const Eigen::MatrixXd W = in.S.matrixL().solve(in.PHt.transpose());
-  const Eigen::VectorXd step = W.transpose() * in.S.matrixL().solve(in.v);
+  Eigen::VectorXd step = W.transpose() * in.S.matrixL().solve(in.v);
   state_.x += step;
   state_.P -= W.transpose() * W;
   return step;

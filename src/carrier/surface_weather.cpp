@@ -5,7 +5,6 @@
 #include <cmath>
 #include <complex>
 #include <cstddef>
-#include <numbers>
 
 #include "latitude_table.hpp"
 
@@ -13,8 +12,6 @@ namespace coast::carrier {
 
 namespace {
 
-constexpr double kPi = std::numbers::pi;
-constexpr double kDegree = kPi / 180.0;
 constexpr double kYear = 365.25;      // d, of both models
 constexpr double kFreezing = 273.15;  // K
 
@@ -140,14 +137,14 @@ struct Vapour {
   Column lapse;        // beta, K/m
   Column decrease;     // lambda
 };
-constexpr Vapour kAverage{{299.65, 294.15, 283.15, 272.15, 263.65},
-                          {26.31, 21.79, 11.66, 6.78, 4.11},
-                          {6.30e-3, 6.05e-3, 5.58e-3, 5.39e-3, 4.53e-3},
-                          {2.77, 3.15, 2.57, 1.81, 1.55}};
-constexpr Vapour kAmplitude{{0.0, 7.0, 11.0, 15.0, 14.5},
-                            {0.0, 8.85, 7.24, 5.36, 3.39},
-                            {0.0, 0.25e-3, 0.32e-3, 0.81e-3, 0.62e-3},
-                            {0.0, 0.33, 0.46, 0.74, 0.30}};
+constexpr Vapour kMeanVapour{{299.65, 294.15, 283.15, 272.15, 263.65},
+                             {26.31, 21.79, 11.66, 6.78, 4.11},
+                             {6.30e-3, 6.05e-3, 5.58e-3, 5.39e-3, 4.53e-3},
+                             {2.77, 3.15, 2.57, 1.81, 1.55}};
+constexpr Vapour kVapourAmplitude{{0.0, 7.0, 11.0, 15.0, 14.5},
+                                  {0.0, 8.85, 7.24, 5.36, 3.39},
+                                  {0.0, 0.25e-3, 0.32e-3, 0.81e-3, 0.62e-3},
+                                  {0.0, 0.33, 0.46, 0.74, 0.30}};
 
 struct MeanVapour {
   double pressure;  // hPa
@@ -158,9 +155,9 @@ MeanVapour mean_vapour(double latitude, double height, double day) {
   constexpr double kGravity = 9.80665;     // m/s^2, DO-229's
   constexpr double kSouth = 211.0 - 28.0;  // d, from the northern minimum to the southern
   // The step at the equator does no harm: up to 15 degrees the amplitudes are zero.
-  const double season = std::cos(2.0 * kPi * (latitude < 0.0 ? day - kSouth : day) / kYear);
+  const double season = std::cos(2.0 * geo::kPi * (latitude < 0.0 ? day - kSouth : day) / kYear);
   const auto of_day = [&](const Column Vapour::*column) {
-    return at_latitude(kAverage.*column, latitude) - season * at_latitude(kAmplitude.*column, latitude);
+    return at_latitude(kMeanVapour.*column, latitude) - season * at_latitude(kVapourAmplitude.*column, latitude);
   };
   const double lapse = of_day(&Vapour::lapse);
   const double decrease = of_day(&Vapour::decrease);
@@ -183,7 +180,7 @@ SurfaceWeather surface_weather(const geo::Geodetic& point, geo::GpsTime t) {
   const Harmonics y = harmonics(point);
   const double height = within_the_air(point.height) - value(kUndulation, y);
   const double day = (t - geo::GpsTime{}) / 86400.0 - 22.0;  // from 28 January 1980
-  const double season = std::cos(2.0 * kPi * day / kYear);
+  const double season = std::cos(2.0 * geo::kPi * day / kYear);
   const double pressure = value(kPressure, y) + season * value(kPressureAmplitude, y);
   const double celsius = value(kTemperature, y) + season * value(kTemperatureAmplitude, y) - kLapse * height;
   const MeanVapour vapour = mean_vapour(point.latitude, height, day);
