@@ -213,8 +213,8 @@ void RelativeFilter::predict_ambiguities(const DifferenceEpoch& epoch, double dt
     }
 }
 
-/// Receivers of different makes delay the phases of GLONASS's channels differently, by up to 5 cm from one to the next,
-/// linearly (Wanninger 2012). It is constant, and all satellites of a band share it.
+/// Receivers of different makes delay the phases of GLONASS's channels differently, by some centimetres from one to the
+/// next, linearly (Wanninger 2012). It is constant, and all satellites of a band share it.
 void RelativeFilter::add_inter_frequency_bias(const BandDifference& band) {
   constexpr double kSd = 0.03;  // m
   const Unknown unknown{Kind::kInterFrequencyBias, {}, band.band, 0};

@@ -40,9 +40,10 @@ void read_with_ppk(const RunConfig& config, const std::function<void(double)>& p
     throw InputError({config.ppk->rover.string(), 0, "no epoch with a position", "codes of four satellites or more",
                       "Run `coast ppk` on it: its page says what is missing."});
   recordings.imu = io::read_imu(config.imu, recordings.gnss.fixes.front().t);
-  if (config.tight)
-    recordings.carrier = std::make_shared<const estimate::CarrierObservations>(
-        estimate::carrier_observations(std::move(ppk.solution), ppk.options));
+  if (!config.tight) return;
+  recordings.inspection.emplace_back("GNSS: tightly coupled, observations go into the filter in place of positions");
+  recordings.carrier = std::make_shared<const estimate::CarrierObservations>(
+      estimate::carrier_observations(std::move(ppk.solution), ppk.options));
 }
 
 }  // namespace

@@ -9,6 +9,7 @@
 #include "page_curves.hpp"
 #include "page_parts.hpp"
 #include "page_separation.hpp"
+#include "summary.hpp"
 
 namespace coast::cli {
 
@@ -149,8 +150,8 @@ Tile studied_outage_tile(const std::vector<const study::OutageResult*>& outages)
   }
   Tile tile{"Worst outage", number(error(*worst), 3), "m", Verdict::kNone, "", {}, "outages"};
   tile.explanation =
-      fmt::format("Largest horizontal error, {:.0f} s without GNSS at {:.0f} s; forward {} m. ", worst->outage.duration_s,
-                  worst->outage.start.sow(), number(worst->forward.horizontal_max_m, 3));
+      fmt::format("Largest horizontal error, {:.0f} s {} at {:.0f} s; forward {} m. ", worst->outage.duration_s,
+                  gnss_left(worst->outage), worst->outage.start.sow(), number(worst->forward.horizontal_max_m, 3));
   if (tested > 0.0) {
     tile.verdict = verdict_of_share(inside / tested, outages.size());
     tile.explanation += fmt::format("{} % of all errors are inside their predicted 95 %.", percent(inside / tested));

@@ -258,6 +258,7 @@ void ProcessRun::offer_gnss_noise() {
   constexpr std::size_t kFewest = 100;  // epochs; fewer say little
   constexpr double kWindow = 300.0;     // s
   const double ratio = std::sqrt(result_.nis.mean / result_.nis.expected);
+  if (config_.tight) return;  // no fixes, no sigmas of fixes
   if (result_.noise_fit || result_.nis.epochs < kFewest || (ratio < kFits && ratio > 1.0 / kFits)) return;
   constexpr estimate::NoiseFitChoice kGnssAlone{.gnss_scale = true, .correlated_gnss = true, .imu_white_noise = false};
   const estimate::NoiseFit fit =

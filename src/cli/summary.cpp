@@ -33,6 +33,7 @@ Json outage_json(const study::OutageResult& o, const std::string& compared_with)
   Json j;
   j["start_s"] = o.outage.start.sow();
   j["duration_s"] = o.outage.duration_s;
+  if (o.outage.satellites_left > 0) j["satellites"] = o.outage.satellites_left;
   j["compared_with"] = compared_with;
   j["forward"] = outage_errors_json(o.forward);
   if (o.smoothed) j["smoothed"] = outage_errors_json(*o.smoothed);
@@ -86,6 +87,10 @@ Json separation_json(const std::vector<Separation>& separations) {
 }
 
 }  // namespace
+
+std::string gnss_left(const study::Outage& outage) {
+  return outage.satellites_left > 0 ? fmt::format("with {} satellites", outage.satellites_left) : "without GNSS";
+}
 
 NisSummary nis_of(const std::vector<estimate::InnovationRecord>& innovations) {
   NisSummary s;
@@ -155,11 +160,12 @@ std::string summary_text(const ProcessResult& result) {
     text += fmt::format("against the reference, rms: {:.3f} {:.3f} {:.3f} m N E D\n", rms.x(), rms.y(), rms.z());
   }
   for (const DriftRow& row : drift_table(result.sweep))
-    text += fmt::format("outages of {:g} s ({}): largest horizontal error, median: forward {:.3f} m, smoothed {:.3f} m\n",
-                        row.duration_s, row.outages, row.forward.median, row.smoothed.median);
+    text += fmt::format("outages of {:g} s {} ({}): largest horizontal error, median: forward {:.3f} m, smoothed {:.3f} m\n",
+                        row.duration_s, gnss_left(result.sweep.front().outage), row.outages, row.forward.median,
+                        row.smoothed.median);
   for (const auto& o : result.outages)
-    text += fmt::format("outage at {:.1f} s for {:g} s: largest horizontal error forward {:.3f} m{}\n", o.outage.start.sow(),
-                        o.outage.duration_s, o.forward.horizontal_max_m,
+    text += fmt::format("outage at {:.1f} s for {:g} s {}: largest horizontal error forward {:.3f} m{}\n", o.outage.start.sow(),
+                        o.outage.duration_s, gnss_left(o.outage), o.forward.horizontal_max_m,
                         o.smoothed ? fmt::format(", smoothed {:.3f} m", o.smoothed->horizontal_max_m) : "");
   return text;
 }

@@ -10,5 +10,7 @@ namespace coast::cli {
 [[nodiscard]] std::string summary_json(const ProcessResult& result);
 /// The few lines that end a run on the terminal.
 [[nodiscard]] std::string summary_text(const ProcessResult& result);
+/// "without GNSS", "with 3 satellites"
+[[nodiscard]] std::string gnss_left(const study::Outage& outage);
 
 }  // namespace coast::cli

@@ -14,7 +14,7 @@ namespace coast::study {
 struct Outage {
   geo::GpsTime start;
   double duration_s = 0.0;
-  int satellites_left = 0;
+  int satellites_left = 0;  ///< the highest ones; 0: none
   [[nodiscard]] estimate::Withheld span() const { return {start, start + duration_s, satellites_left}; }
 };
 
