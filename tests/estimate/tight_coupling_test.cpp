@@ -14,7 +14,7 @@ namespace {
 
 using namespace estimate;
 
-constexpr double kDuration = 60.0;
+constexpr double kTightDuration = 60.0;
 
 simulate::ObservationOptions white_noise_alone() {
   simulate::ObservationOptions options;
@@ -36,8 +36,8 @@ struct TightMission {
                         const FilterOptions& filtering = {}) {
     simulate::GnssOptions gnss;
     gnss.lever_arm_b = options.lever_arm_b;
-    recording = test::make_recording({.duration = kDuration, .gnss = gnss}, &model, seed);
-    const auto observed = simulate::simulate_observations(test::weaving(kDuration), test::mission_start(), options, seed);
+    recording = test::make_recording({.duration = kTightDuration, .gnss = gnss}, &model, seed);
+    const auto observed = simulate::simulate_observations(test::weaving(kTightDuration), test::mission_start(), options, seed);
     carrier::PpkOptions ppk;
     ppk.air = carrier::AirStates{};
     const auto base = [&observed](geo::GpsTime) { return std::optional(observed.r_base_e); };
@@ -132,7 +132,7 @@ TEST(TightCoupling, FewerSatellitesThanAFixNeedsHelp) {
     double squares = 0.0;
     for (std::uint64_t seed = 1; seed <= 6; ++seed) {
       FilterOptions options;
-      options.withheld.push_back({test::mission_start() + 30.0, test::mission_start() + kDuration + 1.0, satellites});
+      options.withheld.push_back({test::mission_start() + 30.0, test::mission_start() + kTightDuration + 1.0, satellites});
       const TightMission mission(seed, white_noise_alone(), options);
       const FilterState last = mission.run(nullptr).last;
       squares += (last.nav.r_eb_e - mission.recording.truth(last.nav.t).r_eb_e).squaredNorm();
