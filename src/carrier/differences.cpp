@@ -14,8 +14,6 @@ namespace {
 
 using record::Satellite;
 
-constexpr double kOnEarth = 6e6;  // m from its centre
-
 /// What the base's observations of one satellite differ from the model at its position.
 struct BaseSatellite {
   Satellite satellite;
@@ -41,7 +39,7 @@ std::optional<Eigen::Vector3d> velocity_of(const BasePosition& position, geo::Gp
 /// both rise alike, by a tenth of a millimetre a kilometre.
 Eigen::Vector3d lifted(const Eigen::Vector3d& r_base_e, const std::optional<Eigen::Vector3d>& r_rover_e, geo::GpsTime t) {
   constexpr double kMatters = 10e3;  // m
-  if (!r_rover_e || (r_base_e - *r_rover_e).norm() < kMatters || r_rover_e->norm() < kOnEarth) return Eigen::Vector3d::Zero();
+  if (!r_rover_e || (r_base_e - *r_rover_e).norm() < kMatters) return Eigen::Vector3d::Zero();
   return solid_tide(r_base_e, t) - solid_tide(*r_rover_e, t);
 }
 
@@ -173,6 +171,21 @@ std::vector<BandDifference> bands_of(const TrackedSatellite& rover, const BaseSa
   return bands;
 }
 
+/// The rover by itself.
+std::vector<DifferenceEpoch> rover_alone(const std::vector<TrackedEpoch>& tracked, const std::optional<Eigen::Vector3d>& near_e,
+                                         const DifferenceOptions& options) {
+  std::vector<DifferenceEpoch> epochs;
+  Eigen::Vector3d start_e = near_e.value_or(Eigen::Vector3d::Zero());
+  for (const TrackedEpoch& at : tracked) {
+    DifferenceEpoch& epoch = epochs.emplace_back();
+    epoch.t = at.t;
+    epoch.seen = static_cast<int>(at.codes.size());
+    epoch.alone = single_point(at.codes, at.t, start_e, options.air, options.elevation_mask);
+    if (epoch.alone) start_e = epoch.alone->r_e;
+  }
+  return epochs;
+}
+
 }  // namespace
 
 double BandDifference::wavelength() const {
@@ -191,22 +204,20 @@ std::vector<DifferenceEpoch> form_differences(const record::ObservationRecording
     of_rover.signals[band] = pair.rover;
     of_base.signals[band] = pair.base;
   }
-  const BaseInterpolation bases(residuals_of(track(base, orbits, of_base), base_position, rover.approximate_r_e, options),
+  const std::vector<TrackedEpoch> tracked = track(rover, orbits, of_rover);
+  std::vector<DifferenceEpoch> epochs = rover_alone(tracked, rover.approximate_r_e, options);
+  const auto placed = std::ranges::find_if(epochs, [](const DifferenceEpoch& epoch) { return epoch.alone.has_value(); });
+  const std::optional<Eigen::Vector3d> r_rover_e = placed == epochs.end() ? std::nullopt : std::optional(placed->alone->r_e);
+  const BaseInterpolation bases(residuals_of(track(base, orbits, of_base), base_position, r_rover_e, options),
                                 options.longest_base_gap_s);
-  std::vector<DifferenceEpoch> epochs;
-  Eigen::Vector3d start_e = rover.approximate_r_e.value_or(Eigen::Vector3d::Zero());
-  for (const TrackedEpoch& tracked : track(rover, orbits, of_rover)) {
-    DifferenceEpoch& epoch = epochs.emplace_back();
-    epoch.t = tracked.t;
-    epoch.seen = static_cast<int>(tracked.codes.size());
-    epoch.alone = single_point(tracked.codes, tracked.t, start_e, options.air, options.elevation_mask);
-    if (epoch.alone) start_e = epoch.alone->r_e;
-    const BaseInterpolation::Pair pair = bases.around(tracked.t);
+  for (std::size_t i = 0; i < epochs.size(); ++i) {
+    DifferenceEpoch& epoch = epochs[i];
+    const BaseInterpolation::Pair pair = bases.around(epoch.t);
     if (pair.first == nullptr) continue;
     epoch.age_s = pair.age;
     epoch.r_base_e = pair.first->r_e;
     if (pair.second != nullptr) epoch.r_base_e += pair.w * (pair.second->r_e - pair.first->r_e);
-    for (const TrackedSatellite& s : tracked.satellites) {
+    for (const TrackedSatellite& s : tracked[i].satellites) {
       const BaseSatellite at_base = BaseInterpolation::satellite_at(pair, s.satellite);
       std::vector<BandDifference> bands = bands_of(s, at_base);
       if (!bands.empty()) epoch.satellites.push_back({s.satellite, s.state, at_base.elevation, std::move(bands)});
