@@ -6,20 +6,21 @@
 #include <numbers>
 #include <stdexcept>
 
+#include "coast/geo/units.hpp"
+
 namespace coast::carrier {
 namespace {
 
-constexpr double kDegree = std::numbers::pi / 180.0;
 constexpr double kLight = 299792458.0;
 
 TEST(Direction, OfPointsAboutAReceiver) {
-  const geo::Geodetic at{46.5 * kDegree, 6.5 * kDegree, 400.0};
+  const geo::Geodetic at{46.5 * geo::kDegree, 6.5 * geo::kDegree, 400.0};
   const geo::LocalFrame local(at);
   const Eigen::Vector3d receiver = geo::ecef_from_geodetic(at);
   const Direction west = direction_of(local.to_ecef({0.0, -1000.0, -1000.0}), receiver);
-  EXPECT_NEAR(west.azimuth, 270.0 * kDegree, 1e-9);
-  EXPECT_NEAR(west.elevation, 45.0 * kDegree, 1e-9);
-  EXPECT_NEAR(direction_of(local.to_ecef({0.0, 0.0, -1e6}), receiver).elevation, 90.0 * kDegree, 1e-9);
+  EXPECT_NEAR(west.azimuth, 270.0 * geo::kDegree, 1e-9);
+  EXPECT_NEAR(west.elevation, 45.0 * geo::kDegree, 1e-9);
+  EXPECT_NEAR(direction_of(local.to_ecef({0.0, 0.0, -1e6}), receiver).elevation, 90.0 * geo::kDegree, 1e-9);
 }
 
 // With the first coefficients alone the model is a constant by night and a cosine by day, to its fourth order, about 14 h of
@@ -30,7 +31,7 @@ TEST(Klobuchar, IsItsOwnCosine) {
   model.alpha[0] = 2e-8;
   model.beta[0] = 100000.0;
   const geo::Geodetic greenwich{0.9, 0.0, 0.0};
-  const Direction zenith{0.0, 90.0 * kDegree};
+  const Direction zenith{0.0, 90.0 * geo::kDegree};
   const double obliquity = 1.0 + 16.0 * 0.03 * 0.03 * 0.03;
   const auto delay = [&](double local) {
     return klobuchar_delay(model, greenwich, zenith, geo::GpsTime::from_week(2200, local));
@@ -41,7 +42,7 @@ TEST(Klobuchar, IsItsOwnCosine) {
   EXPECT_NEAR(delay(60400.0), kLight * (5e-9 + 2e-8 * (1.0 - x * x / 2.0 + x * x * x * x / 24.0)) * obliquity, 1e-9);
   EXPECT_NEAR(delay(60400.0), kLight * (5e-9 + 2e-8 * std::cos(x)) * obliquity, 2e-3 * kLight * 2e-8);
   // 15 degrees east it is an hour later.
-  const geo::Geodetic east{0.9, 15.0 * kDegree, 0.0};
+  const geo::Geodetic east{0.9, 15.0 * geo::kDegree, 0.0};
   EXPECT_NEAR(klobuchar_delay(model, east, zenith, geo::GpsTime::from_week(2200, 56800.0)), delay(60400.0), 1e-9);
 }
 
@@ -58,7 +59,7 @@ TEST(Troposphere, NiellMapping) {
   EXPECT_NEAR(zenith.hydrostatic, 1.0, 1e-12);
   EXPECT_NEAR(zenith.wet, 1.0, 1e-12);
   // The seasons of the south are half a year away.
-  const geo::Geodetic north{45.0 * kDegree, 0.0, 0.0}, south{-45.0 * kDegree, 0.0, 0.0};
+  const geo::Geodetic north{45.0 * geo::kDegree, 0.0, 0.0}, south{-45.0 * geo::kDegree, 0.0, 0.0};
   const geo::GpsTime february = geo::GpsTime::from_calendar({2009, 2, 10, 0, 0, 0.0});
   EXPECT_NEAR(niell_mapping(north, 0.1, february).hydrostatic,
               niell_mapping(south, 0.1, february + 182.625 * 86400.0).hydrostatic, 1e-9);

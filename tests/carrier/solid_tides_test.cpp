@@ -5,18 +5,15 @@
 #include <Eigen/Geometry>
 #include <array>
 #include <cmath>
-#include <numbers>
 
 #include "coast/geo/earth.hpp"
+#include "coast/geo/units.hpp"
 
 namespace coast::carrier {
 namespace {
 
 using Eigen::Vector3d;
 
-constexpr double kPi = std::numbers::pi;
-constexpr double kDegree = kPi / 180.0;
-constexpr double kArcMinute = kDegree / 60.0;
 constexpr double kAstronomicalUnit = 149597870700.0;  // m
 
 struct Published {
@@ -47,7 +44,7 @@ const std::array<Published, 3> kPublished{{{{2009, 4, 13, 0, 0, 0.0},
 /// Greenwich mean sidereal time of UTC, rad: Meeus (1998) eq. (12.4), another series than the code's.
 double sidereal(geo::GpsTime t) {
   const double days = ((t - geo::GpsTime::from_calendar({2000, 1, 1, 12, 0, 0.0})) - geo::leap_seconds(t)) / 86400.0;
-  return (280.46061837 + 360.98564736629 * days) * kDegree;
+  return (280.46061837 + 360.98564736629 * days) * geo::kDegree;
 }
 
 /// From ECEF to the equator and mean equinox of date.
@@ -102,7 +99,7 @@ TEST(SolidTide, ContainsThePermanentTide) {
       mean += solid_tide(r_e, start + 18.613 * 365.25 * 86400.0 * i / kSteps).dot(r_e.normalized()) / kSteps;
     return mean;
   };
-  const double equator = mean_at(0.0), pole = mean_at(0.5 * kPi);
+  const double equator = mean_at(0.0), pole = mean_at(0.5 * geo::kPi);
   EXPECT_NEAR(equator, (-0.1206 - 0.5 * 0.0001) * -0.5, 1e-4);
   EXPECT_NEAR(pole, -0.1206 + 0.0001, 1e-4);
   EXPECT_NEAR(2.0 * equator + pole, 1.5e-4, 1e-4);
@@ -124,8 +121,9 @@ TEST(SolidTide, IsContinuousAtThePoles) {
 TEST(Sun, MeeusExample) {
   const geo::GpsTime t = dynamical(1992, 10, 13);
   const Vector3d sun = of_date(sun_e(t), t);
-  const double obliquity = 23.44023 * kDegree;
-  EXPECT_LT(angle_between(sun, Eigen::AngleAxisd(obliquity, Vector3d::UnitX()) * spherical(199.90988 * kDegree, 0.0)), 1e-6);
+  const double obliquity = 23.44023 * geo::kDegree;
+  EXPECT_LT(angle_between(sun, Eigen::AngleAxisd(obliquity, Vector3d::UnitX()) * spherical(199.90988 * geo::kDegree, 0.0)),
+            1e-6);
   EXPECT_NEAR(sun.norm() / kAstronomicalUnit, 0.99766, 5e-6);
 }
 
@@ -136,16 +134,16 @@ TEST(Sun, StandsOverTheRightMeridian) {
   const geo::GpsTime t = dynamical(1992, 10, 13);
   const Vector3d sun = sun_e(t);
   const double expected = 180.0 + (59.0 - (13.0 * 60.0 + 42.6)) / 240.0;
-  EXPECT_NEAR(std::atan2(sun.y(), sun.x()) / kDegree, expected, 0.02);
+  EXPECT_NEAR(std::atan2(sun.y(), sun.x()) / geo::kDegree, expected, 0.02);
 }
 
 // Example 47.a, by the long series of Chapront: 133.162655 and -3.229126 degrees of date, 368409.7 km.
 TEST(Moon, MeeusExample) {
   const geo::GpsTime t = dynamical(1992, 4, 12);
   const Vector3d moon = of_date(moon_e(t), t);
-  const Vector3d expected =
-      Eigen::AngleAxisd(23.440636 * kDegree, Vector3d::UnitX()) * spherical(133.162655 * kDegree, -3.229126 * kDegree);
-  EXPECT_LT(angle_between(moon, expected), 5.0 * kArcMinute);
+  const Vector3d expected = Eigen::AngleAxisd(23.440636 * geo::kDegree, Vector3d::UnitX()) *
+                            spherical(133.162655 * geo::kDegree, -3.229126 * geo::kDegree);
+  EXPECT_LT(angle_between(moon, expected), 5.0 * geo::kArcMinute);
   EXPECT_NEAR(moon.norm(), 368409.7e3, 500e3);
 }
 
@@ -154,9 +152,9 @@ TEST(SunAndMoon, AreWhereTheEphemerisHasThem) {
   for (std::size_t i = 0; i < 2; ++i) {
     const Published& p = kPublished.at(i);
     const geo::GpsTime t = geo::GpsTime::from_utc(p.utc);
-    EXPECT_LT(angle_between(of_date(sun_e(t), t), p.sun), 1.2 * kArcMinute);
+    EXPECT_LT(angle_between(of_date(sun_e(t), t), p.sun), 1.2 * geo::kArcMinute);
     EXPECT_NEAR(sun_e(t).norm() / p.sun.norm(), 1.0, 1e-4);
-    EXPECT_LT(angle_between(of_date(moon_e(t), t), p.moon), 5.0 * kArcMinute);
+    EXPECT_LT(angle_between(of_date(moon_e(t), t), p.moon), 5.0 * geo::kArcMinute);
     EXPECT_NEAR(moon_e(t).norm(), p.moon.norm(), 500e3);
   }
 }

@@ -8,10 +8,11 @@
 #include <limits>
 #include <numbers>
 
+#include "coast/geo/units.hpp"
+
 namespace coast::carrier {
 namespace {
 
-constexpr double kDegree = std::numbers::pi / 180.0;
 constexpr double kDay = 86400.0;
 
 // 28 January 1980, where both models begin to count.
@@ -21,7 +22,7 @@ geo::GpsTime coldest() {
 
 /// A point at a height above the geoid, from degrees and m.
 geo::Geodetic above_geoid(double latitude, double longitude, double height) {
-  geo::Geodetic point{latitude * kDegree, longitude * kDegree, 0.0};
+  geo::Geodetic point{latitude * geo::kDegree, longitude * geo::kDegree, 0.0};
   point.height = height + geoid_undulation(point);
   return point;
 }
@@ -45,9 +46,9 @@ TEST(SurfaceWeather, GptOfTheConventions) {
 
 // EGM96 has 13.6 m and -29.5 m at the poles and -106 m in the hollow south of India.
 TEST(SurfaceWeather, UndulationIsNearTheGeoid) {
-  EXPECT_NEAR(geoid_undulation({90.0 * kDegree, 1.0, 0.0}), 13.6, 1.1);
-  EXPECT_NEAR(geoid_undulation({-90.0 * kDegree, 1.0, 0.0}), -29.5, 1.1);
-  EXPECT_NEAR(geoid_undulation({4.7 * kDegree, 78.8 * kDegree, 0.0}), -106.0, 6.5);
+  EXPECT_NEAR(geoid_undulation({90.0 * geo::kDegree, 1.0, 0.0}), 13.6, 1.1);
+  EXPECT_NEAR(geoid_undulation({-90.0 * geo::kDegree, 1.0, 0.0}), -29.5, 1.1);
+  EXPECT_NEAR(geoid_undulation({4.7 * geo::kDegree, 78.8 * geo::kDegree, 0.0}), -106.0, 6.5);
 }
 
 // The annual term: opposite after half a year, extreme on 28 January, the same 1461 days (4 years of both models) later.
@@ -149,8 +150,8 @@ TEST(SurfaceWeather, IsContinuous) {
     for (const double pole : {-pi / 2.0, pi / 2.0})
       expect_same(surface_weather({pole, 0.0, 300.0}, t), surface_weather({pole * (1.0 - step), longitude, 300.0}, t), 1e-6);
     for (const double edge : {15.0, 30.0, 45.0, 60.0, 75.0})
-      expect_same(surface_weather({-edge * kDegree - step, longitude, 300.0}, t),
-                  surface_weather({-edge * kDegree + step, longitude, 300.0}, t), 1e-6);
+      expect_same(surface_weather({-edge * geo::kDegree - step, longitude, 300.0}, t),
+                  surface_weather({-edge * geo::kDegree + step, longitude, 300.0}, t), 1e-6);
   }
   const geo::GpsTime new_year = geo::GpsTime::from_calendar({2024, 1, 1, 0, 0, 0.0});
   expect_same(surface_weather({0.8, 0.1, 0.0}, new_year - 1.0), surface_weather({0.8, 0.1, 0.0}, new_year), 1e-5);
@@ -158,7 +159,7 @@ TEST(SurfaceWeather, IsContinuous) {
 
 TEST(SurfaceWeather, FallsWithHeightAndStaysFinite) {
   const geo::GpsTime t = coldest() + 100.0 * kDay;
-  const auto at = [&](double height) { return surface_weather({46.5 * kDegree, 6.5 * kDegree, height}, t); };
+  const auto at = [&](double height) { return surface_weather({46.5 * geo::kDegree, 6.5 * geo::kDegree, height}, t); };
   for (double height = -100.0; height < 9000.0; height += 100.0) {
     const SurfaceWeather low = at(height), high = at(height + 100.0);
     EXPECT_LT(high.pressure_hpa, low.pressure_hpa);
@@ -170,7 +171,7 @@ TEST(SurfaceWeather, FallsWithHeightAndStaysFinite) {
   expect_same(at(-1e9), at(-500.0), 0.0);
   expect_same(at(std::numeric_limits<double>::infinity()), at(10000.0), 0.0);
   for (const double height : {-1e9, 1e9, std::numeric_limits<double>::infinity()}) {
-    const ZenithDelay delay = zenith_delay(at(height), {46.5 * kDegree, 6.5 * kDegree, height});
+    const ZenithDelay delay = zenith_delay(at(height), {46.5 * geo::kDegree, 6.5 * geo::kDegree, height});
     EXPECT_GT(delay.hydrostatic, 0.6);
     EXPECT_LT(delay.hydrostatic, 2.5);
     EXPECT_GT(delay.wet, 0.0);
@@ -182,11 +183,11 @@ TEST(SurfaceWeather, FallsWithHeightAndStaysFinite) {
 }
 
 TEST(ZenithDelay, Hydrostatic) {
-  EXPECT_NEAR(zenith_delay({1013.25, 288.0, 0.0}, {45.0 * kDegree, 0.0, 0.0}).hydrostatic, 2.30697, 1e-5);
+  EXPECT_NEAR(zenith_delay({1013.25, 288.0, 0.0}, {45.0 * geo::kDegree, 0.0, 0.0}).hydrostatic, 2.30697, 1e-5);
   EXPECT_NEAR(zenith_delay({1013.25, 288.0, 0.0}, {0.0, 0.0, 0.0}).hydrostatic, 2.30697 / 0.99734, 1e-5);
-  EXPECT_NEAR(zenith_delay({700.0, 288.0, 0.0}, {90.0 * kDegree, 0.0, 3000.0}).hydrostatic, 1.59376 / (1.00266 - 0.00084),
+  EXPECT_NEAR(zenith_delay({700.0, 288.0, 0.0}, {90.0 * geo::kDegree, 0.0, 3000.0}).hydrostatic, 1.59376 / (1.00266 - 0.00084),
               1e-5);
-  EXPECT_NEAR(zenith_delay({1.0, 288.0, 0.0}, {45.0 * kDegree, 0.0, 0.0}).hydrostatic, 2.3e-3, 0.03e-3);
+  EXPECT_NEAR(zenith_delay({1.0, 288.0, 0.0}, {45.0 * geo::kDegree, 0.0, 0.0}).hydrostatic, 2.3e-3, 0.03e-3);
 }
 
 // Refractivity of the vapour summed up to 40 km in air that cools by 6.5 K/km and whose vapour pressure is a power of the
@@ -202,7 +203,7 @@ TEST(ZenithDelay, WetIsTheIntegralOfItsAir) {
     double sum = 0.0;
     for (double z = 0.0; z < 39995.0; z += 10.0)
       sum += (refractivity(z) + 4.0 * refractivity(z + 5.0) + refractivity(z + 10.0)) * 10.0 / 6.0;
-    EXPECT_NEAR(zenith_delay(air, {45.0 * kDegree, 0.0, 0.0}).wet, sum, 1e-6) << decrease;
+    EXPECT_NEAR(zenith_delay(air, {45.0 * geo::kDegree, 0.0, 0.0}).wet, sum, 1e-6) << decrease;
   }
 }
 
@@ -219,7 +220,7 @@ TEST(ZenithDelay, WetAgreesWithOtherFormulas) {
                                   {7.24, 11.0, 0.32e-3, 0.46},
                                   {5.36, 15.0, 0.81e-3, 0.74},
                                   {3.39, 14.5, 0.62e-3, 0.30}};
-  const geo::Geodetic at{45.0 * kDegree, 0.0, 0.0};
+  const geo::Geodetic at{45.0 * geo::kDegree, 0.0, 0.0};
   for (std::size_t i = 0; i < 5; ++i) {
     for (const double season : {-1.0, 0.0, 1.0}) {
       const auto value = [&](std::size_t column) { return table[i][column] - season * amplitude[i][column]; };
@@ -244,7 +245,7 @@ TEST(ZenithDelay, IsNearTheStandardAtmosphere) {
     for (int longitude = -180; longitude < 180; longitude += 15) {
       for (const double height : {0.0, 1000.0, 3000.0}) {
         for (const double day : {0.0, 91.0, 183.0, 274.0}) {
-          const geo::Geodetic at{latitude * kDegree, longitude * kDegree, height};
+          const geo::Geodetic at{latitude * geo::kDegree, longitude * geo::kDegree, height};
           const ZenithDelay mean = zenith_delay(surface_weather(at, coldest() + day * kDay), at);
           const ZenithDelay standard = standard_delay(at);
           EXPECT_NEAR(mean.hydrostatic, standard.hydrostatic, std::abs(latitude) <= 50 ? 0.05 : 0.16);
