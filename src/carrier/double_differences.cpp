@@ -1,10 +1,13 @@
 #include "double_differences.hpp"
 
+#include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
+#include <span>
 #include <tuple>
 
 #include "coast/carrier/signals.hpp"
+#include "coast/carrier/wind_up.hpp"
 
 namespace coast::carrier {
 
@@ -47,6 +50,12 @@ double rate_variance(double elevation) {
   return sd * sd;
 }
 
+/// Where an antenna of this attitude has the satellite: azimuth from its own forward.
+Direction seen_by(const Eigen::Matrix3d& C_b_e, const Eigen::Vector3d& to_satellite_e) {
+  const Eigen::Vector3d way_b = C_b_e.transpose() * to_satellite_e;
+  return {std::atan2(way_b.y(), way_b.x()), std::asin(std::clamp(-way_b.z(), -1.0, 1.0))};
+}
+
 /// Place of the velocity in a state; -1: it has none.
 Eigen::Index velocity_in(const RelativeState& state) {
   return state.index(kVelocityUnknowns.front());
@@ -71,6 +80,8 @@ class Expectation {
     const SatelliteDifference& satellite = epoch_.satellites[s];
     const SignalPath path = path_to(satellite.state, r_e_, rover_, epoch_.t, options_.air.troposphere);
     if (path.direction.elevation < options_.elevation_mask) return;
+    const Direction at_antenna = state_.C_b_e ? seen_by(*state_.C_b_e, path.to_satellite_e) : path.direction;
+    const double wound = state_.C_b_e ? wind_up_by_tilt(path.to_satellite_e, -geo::C_n_e(rover_).col(2), *state_.C_b_e) : 0.0;
     for (std::size_t b = 0; b < satellite.bands.size(); ++b) {
       const BandDifference& band = satellite.bands[b];
       const double sd = nominal_phase_sd(path.direction.elevation, satellite.base_elevation, band);
@@ -82,10 +93,11 @@ class Expectation {
       };
       double expected = path.modelled(satellite.state);
       if (options_.rover_antenna)
-        expected += phase_centre_correction(*options_.rover_antenna, satellite.satellite.system, band.band, path.direction);
+        expected += phase_centre_correction(*options_.rover_antenna, satellite.satellite.system, band.band, at_antenna);
       const bool started = state_.index({Kind::kAmbiguity, satellite.satellite, band.band, band.arc}) >= 0;  // by a code
       if (band.code) candidate(Observable::kCode, code_scale(satellite, band, weighting_) * sd, *band.code - expected);
-      if (band.phase && started) candidate(Observable::kPhase, weighting_.noise.phase * sd, *band.phase - expected);
+      if (band.phase && started)
+        candidate(Observable::kPhase, weighting_.noise.phase * sd, *band.phase - expected - wound * band.wavelength());
       if (band.rate && v_e_)
         candidate(Observable::kRate,
                   weighting_.noise.rate *
@@ -147,6 +159,27 @@ void fill(const Candidate& c, const DifferenceEpoch& epoch, const RelativeState&
   dd.residual(i) = weight * residual;
 }
 
+/// Columns of what a group of rows knows nothing of: the clock; of phases that share one, and of their rates, also the
+/// antenna's turn about the vertical, a cycle of each (wind_up).
+Eigen::MatrixXd nuisances(std::span<const Row> rows, const DifferenceEpoch& epoch, const Weighting& weighting) {
+  const bool turns = weighting.one_phase_clock && rows.front().observable != Observable::kCode;
+  Eigen::MatrixXd columns(rows.size(), turns ? 2 : 1);
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    const double wavelength = epoch.satellites[rows[i].satellite].bands[rows[i].band].wavelength();
+    const auto row = static_cast<Eigen::Index>(i);
+    columns(row, 0) = 1.0 / rows[i].sd;
+    if (turns) columns(row, 1) = wavelength / rows[i].sd;
+  }
+  return columns;
+}
+
+/// Orthonormal rows that are blind to the columns, by Householder's reflections.
+Eigen::MatrixXd complement(const Eigen::MatrixXd& columns) {
+  const Eigen::ColPivHouseholderQR<Eigen::MatrixXd> qr(columns);
+  const Eigen::MatrixXd Q = qr.householderQ();
+  return Q.rightCols(columns.rows() - qr.rank()).transpose();
+}
+
 }  // namespace
 
 double nominal_phase_sd(double rover_elevation, double base_elevation, const BandDifference& band) {
@@ -160,26 +193,23 @@ DoubleDifferences double_differences(const DifferenceEpoch& epoch, const Relativ
   const auto n = static_cast<Eigen::Index>(all.size());
   dd.H.setZero(n, state.size());
   dd.residual.resize(n);
-  Eigen::Index groups = 0;
   for (Eigen::Index i = 0; i < n; ++i) {
-    const Candidate& c = all[static_cast<std::size_t>(i)];
-    if (i == 0 || c.group != all[static_cast<std::size_t>(i - 1)].group) ++groups;
-    dd.rows.push_back(c.row);
-    fill(c, epoch, state, i, dd);
+    dd.rows.push_back(all[static_cast<std::size_t>(i)].row);
+    fill(all[static_cast<std::size_t>(i)], epoch, state, i, dd);
   }
-  dd.B.setZero(n - groups, n);
-  Eigen::Index difference = 0;
+  std::vector<std::pair<Eigen::Index, Eigen::MatrixXd>> blocks;
+  const std::span<const Row> rows(dd.rows);
+  Eigen::Index differences = 0;
   for (Eigen::Index begin = 0, end = 0; begin < n; begin = end) {
     while (end < n && all[static_cast<std::size_t>(end)].group == all[static_cast<std::size_t>(begin)].group) ++end;
-    // Householder's reflection takes the clock's column u to the first axis; its other rows are orthogonal to u.
-    Eigen::VectorXd u(end - begin);
-    for (Eigen::Index i = begin; i < end; ++i) u(i - begin) = 1.0 / dd.rows[static_cast<std::size_t>(i)].sd;
-    u(0) += u.norm();
-    const double scale = 2.0 / u.squaredNorm();
-    for (Eigen::Index k = 1; k < end - begin; ++k, ++difference) {
-      dd.B.row(difference).segment(begin, end - begin) = -scale * u(k) * u.transpose();
-      dd.B(difference, begin + k) += 1.0;
-    }
+    blocks.emplace_back(begin, complement(nuisances(rows.subspan(begin, end - begin), epoch, weighting)));
+    differences += blocks.back().second.rows();
+  }
+  dd.B.setZero(differences, n);
+  Eigen::Index row = 0;
+  for (const auto& [begin, block] : blocks) {
+    dd.B.block(row, begin, block.rows(), block.cols()) = block;
+    row += block.rows();
   }
   return dd;
 }

@@ -23,7 +23,8 @@ struct Row {
 /// All observations of an epoch, the double differences made of them and their place in the state. A group is what shares a
 /// clock: rates of all; phases, or codes, of one system and band. Double differences with any satellite as reference span the
 /// same space: here it is the complement of the clock's column, with orthonormal rows, so that noise stays white and no
-/// satellite is special.
+/// satellite is special. Where phases of several wavelengths share a clock, the turn of the antenna about the vertical, a cycle
+/// of each, is a column beside it.
 struct DoubleDifferences {
   std::vector<Row> rows;     ///< by group
   Eigen::MatrixXd H;         ///< rows x state
@@ -40,8 +41,8 @@ using LeftOut = std::set<std::tuple<std::size_t, std::size_t, Observable>>;
 struct Weighting {
   NoiseScale noise;
   std::set<Unknown> known;  ///< ambiguities that a code has told of before
-  /// Phases of all systems and bands share the receiver's one clock, which their ambiguities differ from by constants: two
-  /// satellites of two systems then still tell something. Else each system and band has its own.
+  /// Phases of all systems and bands share the receiver's one clock and its antenna's turn, which their ambiguities differ from
+  /// by constants: two satellites of two systems then still tell something. Else each system and band has its own clock.
   bool one_phase_clock = false;
 };
 

@@ -85,7 +85,9 @@ carrier::RelativeState TightCoupling::prior(const UpdateContext& context, const 
   P.topRightCorner(kMoving, used) = AP(Eigen::all, at);
   P.bottomLeftCorner(used, kMoving) = P.topRightCorner(kMoving, used).transpose();
   P.bottomRightCorner(used, used) = state.P(at, at);
-  return {named, std::move(x), 0.5 * (P + P.transpose())};
+  carrier::RelativeState prior(named, std::move(x), 0.5 * (P + P.transpose()));
+  prior.C_b_e = state.nav.q_b_e.toRotationMatrix();
+  return prior;
 }
 
 void TightCoupling::follow(const std::vector<carrier::StateChange>& changes, FilterState& state, Knot& knot) {

@@ -12,7 +12,9 @@
 #include "coast/carrier/atmosphere.hpp"
 #include "coast/carrier/orbits.hpp"
 #include "coast/carrier/signals.hpp"
+#include "coast/carrier/solid_tides.hpp"
 #include "coast/carrier/surface_weather.hpp"
+#include "coast/carrier/wind_up.hpp"
 #include "coast/geo/units.hpp"
 #include "constellation.hpp"
 #include "random.hpp"
@@ -88,9 +90,8 @@ class Receiver {
 
   [[nodiscard]] const Clock& clock() const { return clock_; }
   /// @param t  true time since the start, s  @param tag  what the receiver's clock shows, since the start: t plus its error
-  record::ObservationEpoch observe(double t, double tag, const Eigen::Vector3d& r_e, const Eigen::Vector3d& v_e,
-                                   const std::vector<Satellite>& satellites, const std::map<int, int>& channels,
-                                   std::vector<CycleSlip>& slips);
+  record::ObservationEpoch observe(double t, double tag, const Kinematics& antenna, const std::vector<Satellite>& satellites,
+                                   const std::map<int, int>& channels, std::vector<CycleSlip>& slips);
 
  private:
   /// Geometry, clocks of satellite, and air, all but the receiver's clock; as at time t.
@@ -98,11 +99,15 @@ class Receiver {
     double metres = 0.0;  ///< of a signal without ionosphere
     double ionosphere = 0.0;
     carrier::Direction direction;
+    double wind_up = 0.0;  ///< cycles
   };
-  [[nodiscard]] std::optional<Way> way(Satellite satellite, double t, const Eigen::Vector3d& r_e, double wet) const;
+  struct Rate {
+    double metres = 0.0, wind_up = 0.0;  ///< per s
+  };
+  [[nodiscard]] std::optional<Way> way(Satellite satellite, double t, const Kinematics& antenna, double wet) const;
   [[nodiscard]] bool hidden(double t, const carrier::Direction& direction) const;
   record::Observation observe(Satellite satellite, record::Signal signal, double frequency, double t, double tag,
-                              const Way& now, double rate, std::vector<CycleSlip>& slips);
+                              const Way& now, const Rate& rate, std::vector<CycleSlip>& slips);
   GaussMarkov& process(std::map<std::pair<Satellite, char>, GaussMarkov>& all, Satellite satellite, char band,
                        std::uint64_t stream) {
     const auto found = all.find({satellite, band});
@@ -123,12 +128,14 @@ class Receiver {
   Clock clock_;
   std::map<std::pair<Satellite, char>, GaussMarkov> code_multipath_, phase_multipath_;
   std::map<std::pair<Satellite, char>, PhaseLock> locks_;
+  std::map<Satellite, double> wind_ups_;  ///< of the epoch before
 };
 
-std::optional<Receiver::Way> Receiver::way(Satellite satellite, double t, const Eigen::Vector3d& r_e, double wet) const {
+std::optional<Receiver::Way> Receiver::way(Satellite satellite, double t, const Kinematics& antenna, double wet) const {
   // In inertial axes that agree with ECEF at reception: the satellite's position at transmission turns back by omega tau.
   double tau = 0.075;
   carrier::SatelliteState state;
+  const Eigen::Vector3d& r_e = antenna.r_eb_e;
   Eigen::Vector3d r_satellite_e;
   for (int i = 0; i < 5; ++i) {
     const std::optional<carrier::SatelliteState> at = orbits_.at(satellite, start_ + (t - tau));
@@ -143,6 +150,9 @@ std::optional<Receiver::Way> Receiver::way(Satellite satellite, double t, const 
   const geo::Geodetic receiver = geo::geodetic_from_ecef(r_e);
   const carrier::ZenithDelay zenith = carrier::zenith_delay(carrier::surface_weather(receiver, start_ + t), receiver);
   const carrier::TroposphericMapping mapping = carrier::niell_mapping(receiver, w.direction.elevation, start_ + t);
+  const auto wound = wind_ups_.find(satellite);
+  w.wind_up = carrier::wind_up(r_satellite_e, carrier::sun_e(start_ + t), r_e, antenna.C_b_e,
+                               wound == wind_ups_.end() ? 0.0 : wound->second);
   w.metres =
       kSpeedOfLight * (tau - state.clock_s) + mapping.hydrostatic * zenith.hydrostatic + mapping.wet * (zenith.wet + wet);
   // A thin layer at 450 km; its vertical delay grows towards the equator.
@@ -163,7 +173,7 @@ bool Receiver::hidden(double t, const carrier::Direction& direction) const {
 }
 
 record::Observation Receiver::observe(Satellite satellite, record::Signal signal, double frequency, double t, double tag,
-                                      const Way& now, double rate, std::vector<CycleSlip>& slips) {
+                                      const Way& now, const Rate& rate, std::vector<CycleSlip>& slips) {
   constexpr double kMillimetre = 1e-3, kThousandth = 1e-3;
   constexpr double kLost = 1.5;  // epochs
   const double wavelength = kSpeedOfLight / frequency;
@@ -194,26 +204,37 @@ record::Observation Receiver::observe(Satellite satellite, record::Signal signal
   }
   lock.last = tag;
   o.code_m = std::round((metres + dispersion * now.ionosphere + code_error) / kMillimetre) * kMillimetre;
-  const double phase = (metres - dispersion * now.ionosphere + phase_error) / wavelength + lock.cycles;
+  const double phase = (metres - dispersion * now.ionosphere + phase_error) / wavelength + lock.cycles + now.wind_up;
   o.phase_cycles = std::round(phase / kThousandth) * kThousandth;
-  o.doppler_hz = std::round((-(rate + kSpeedOfLight * clock_.drift) / wavelength + 0.02 * draw_()) / kMillimetre) * kMillimetre;
+  const double doppler = -(rate.metres + kSpeedOfLight * clock_.drift) / wavelength - rate.wind_up;
+  o.doppler_hz = std::round((doppler + 0.02 * draw_()) / kMillimetre) * kMillimetre;
   o.cn0_dbhz = std::round(10.0 * (50.0 + 10.0 * std::log10(std::sin(now.direction.elevation)) + 0.5 * draw_())) / 10.0;
   return o;
 }
 
-record::ObservationEpoch Receiver::observe(double t, double tag, const Eigen::Vector3d& r_e, const Eigen::Vector3d& v_e,
+/// Where it is soon, or was a while ago.
+Kinematics moved(Kinematics antenna, double dt) {
+  antenna.r_eb_e += dt * antenna.v_eb_e;
+  const Eigen::Vector3d angle = dt * antenna.omega_eb_b;
+  antenna.C_b_e *= Eigen::AngleAxisd(angle.norm(), angle.stableNormalized()).toRotationMatrix();
+  return antenna;
+}
+
+record::ObservationEpoch Receiver::observe(double t, double tag, const Kinematics& antenna,
                                            const std::vector<Satellite>& satellites, const std::map<int, int>& channels,
                                            std::vector<CycleSlip>& slips) {
   record::ObservationEpoch epoch;
   epoch.t = start_ + tag;
   const double wet = is_rover_ ? options_.wet_zenith_sd * wet_.at(t) : 0.0;
   for (const Satellite satellite : satellites) {
-    const std::optional<Way> now = way(satellite, t, r_e, wet);
+    const std::optional<Way> now = way(satellite, t, antenna, wet);
     if (!now || hidden(tag, now->direction)) continue;
     constexpr double kStep = 0.01;  // s
-    const std::optional<Way> soon = way(satellite, t + kStep, r_e + kStep * v_e, wet);
-    const std::optional<Way> ago = way(satellite, t - kStep, r_e - kStep * v_e, wet);
-    const double rate = soon && ago ? (soon->metres - ago->metres) / (2.0 * kStep) : 0.0;
+    const std::optional<Way> soon = way(satellite, t + kStep, moved(antenna, kStep), wet);
+    const std::optional<Way> ago = way(satellite, t - kStep, moved(antenna, -kStep), wet);
+    Rate rate;
+    if (soon && ago) rate = {(soon->metres - ago->metres) / (2.0 * kStep), (soon->wind_up - ago->wind_up) / (2.0 * kStep)};
+    wind_ups_[satellite] = now->wind_up;
     const auto channel = channels.find(satellite.number);
     for (const record::Signal signal : signals_of(satellite.system)) {
       const double frequency =
@@ -222,6 +243,14 @@ record::ObservationEpoch Receiver::observe(double t, double tag, const Eigen::Ve
     }
   }
   return epoch;
+}
+
+Kinematics standing_upright(const Eigen::Vector3d& r_e) {
+  Kinematics antenna;
+  antenna.r_eb_e = r_e;
+  antenna.v_eb_e = antenna.a_eb_e = antenna.omega_eb_b = antenna.alpha_eb_b = Eigen::Vector3d::Zero();
+  antenna.C_b_e = geo::C_n_e(geo::geodetic_from_ecef(r_e));
+  return antenna;
 }
 
 void check(const ObservationOptions& o) {
@@ -267,10 +296,9 @@ SimulatedObservations simulate_observations(const AnalyticTrajectory& motion, ge
       const double tag = static_cast<double>(k) / rate;
       const double t = tag - receiver.clock().at(tag);
       if (tag > motion.duration() || t > motion.duration()) break;
-      const Kinematics antenna = at_point(motion.at(std::max(t, 0.0)), options.lever_arm_b);
-      const Eigen::Vector3d r_e = is_rover ? antenna.r_eb_e : result.r_base_e;
-      const Eigen::Vector3d v_e = is_rover ? antenna.v_eb_e : Eigen::Vector3d::Zero();
-      recording.epochs.push_back(receiver.observe(std::max(t, 0.0), tag, r_e, v_e, satellites, channels, result.slips));
+      const Kinematics antenna =
+          is_rover ? at_point(motion.at(std::max(t, 0.0)), options.lever_arm_b) : standing_upright(result.r_base_e);
+      recording.epochs.push_back(receiver.observe(std::max(t, 0.0), tag, antenna, satellites, channels, result.slips));
     }
     recording.approximate_r_e = is_rover ? at_point(motion.at(0.0), options.lever_arm_b).r_eb_e : result.r_base_e;
   }

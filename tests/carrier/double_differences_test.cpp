@@ -124,5 +124,83 @@ TEST_F(DoubleDifferencesTest, DesignIsTheDerivative) {
   }
 }
 
+/// Phases of an epoch less what the truth expects, m, without what its bands have in common.
+std::map<std::pair<record::Satellite, char>, double> phases_apart(const DifferenceEpoch& epoch, const RelativeState& state) {
+  Weighting coupled;
+  coupled.one_phase_clock = true;
+  const DoubleDifferences dd = double_differences(epoch, state, {}, {}, coupled);
+  std::map<std::pair<record::Satellite, char>, double> all;
+  std::map<char, std::pair<double, double>> sums;
+  for (std::size_t i = 0; i < dd.rows.size(); ++i) {
+    if (dd.rows[i].observable != Observable::kPhase) continue;
+    const SatelliteDifference& s = epoch.satellites[dd.rows[i].satellite];
+    const char band = s.bands[dd.rows[i].band].band;
+    const double metres = dd.residual(static_cast<Eigen::Index>(i)) * dd.rows[i].sd;
+    all[{s.satellite, band}] = metres;
+    sums[band].first += metres;
+    sums[band].second += 1.0;
+  }
+  for (auto& [signal, metres] : all) metres -= sums.at(signal.second).first / sums.at(signal.second).second;
+  return all;
+}
+
+// An aircraft between level flight and a turn at 45 degrees of bank. Ambiguities are the same; what the phases differ by is
+// rounding, 0.001 cycles of two receivers twice (0.15 mm), and the antenna's attitude.
+TEST(DoubleDifferences, PhasesFollowATiltedAntenna) {
+  const SimulatedBaseline mission("aircraft_lines", 900.0, error_free());
+  const std::vector<DifferenceEpoch> epochs = mission.differences();
+  const auto state_at = [&](const DifferenceEpoch& epoch, bool attitude_known) {
+    const simulate::Kinematics truth = mission.truth(epoch.t - epoch.alone->clock_s);
+    RelativeState state;
+    state.x.head<3>() = truth.r_eb_e;
+    for (const SatelliteDifference& s : epoch.satellites)
+      for (const BandDifference& band : s.bands)
+        state.add({Unknown::Kind::kAmbiguity, s.satellite, band.band, band.arc}, 0.0, 1e4);
+    if (attitude_known) state.C_b_e = truth.C_b_e;
+    return state;
+  };
+  const auto tilt = [&](const DifferenceEpoch& epoch) {
+    const simulate::Kinematics truth = mission.truth(epoch.t);
+    return std::acos(truth.C_b_e.col(2).dot(geo::C_n_e(geo::geodetic_from_ecef(truth.r_eb_e)).col(2)));
+  };
+  const DifferenceEpoch* level = nullptr;
+  int banked = 0;
+  for (const DifferenceEpoch& epoch : epochs) {
+    if (tilt(epoch) < 1.0 * geo::kDegree) level = &epoch;
+    if (level == nullptr || tilt(epoch) < 40.0 * geo::kDegree) continue;
+    ++banked;
+    for (const bool known : {true, false}) {
+      const auto before = phases_apart(*level, state_at(*level, known)), now = phases_apart(epoch, state_at(epoch, known));
+      ASSERT_EQ(before.size(), now.size());
+      double squares = 0.0;
+      for (const auto& [signal, metres] : now) squares += std::pow(metres - before.at(signal), 2);
+      const double rms = std::sqrt(squares / static_cast<double>(now.size()));
+      if (known) {
+        EXPECT_LT(rms, 5e-4);
+      } else {
+        EXPECT_GT(rms, 4e-3);
+      }
+    }
+  }
+  EXPECT_GT(banked, 10);
+}
+
+TEST_F(DoubleDifferencesTest, PhasesWithOneClockAreBlindToATurnOfTheAntenna) {
+  const DifferenceEpoch& epoch = epochs_[100];
+  Weighting coupled;
+  coupled.one_phase_clock = true;
+  const DoubleDifferences dd = double_differences(epoch, state_, {}, {}, coupled);
+  Eigen::VectorXd turn = Eigen::VectorXd::Zero(dd.B.cols()), clock = turn;
+  for (Eigen::Index i = 0; i < turn.size(); ++i) {
+    const Row& row = dd.rows[static_cast<std::size_t>(i)];
+    if (row.observable != Observable::kPhase) continue;
+    clock(i) = 1.0 / row.sd;
+    turn(i) = epoch.satellites[row.satellite].bands[row.band].wavelength() / row.sd;
+  }
+  EXPECT_LT((dd.B * turn).norm(), 1e-12 * turn.norm());
+  EXPECT_LT((dd.B * clock).norm(), 1e-12 * clock.norm());
+  EXPECT_LT((dd.B * dd.B.transpose() - Eigen::MatrixXd::Identity(dd.B.rows(), dd.B.rows())).norm(), 1e-12);
+}
+
 }  // namespace
 }  // namespace coast::carrier

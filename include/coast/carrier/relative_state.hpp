@@ -4,6 +4,7 @@
 #include <Eigen/Core>
 #include <array>
 #include <compare>
+#include <optional>
 #include <vector>
 
 #include "coast/record/satellite.hpp"
@@ -45,6 +46,7 @@ class RelativeState {
 
   Eigen::VectorXd x;
   Eigen::MatrixXd P;
+  std::optional<Eigen::Matrix3d> C_b_e;  ///< attitude of the antenna, where somebody knows it
 
   [[nodiscard]] Eigen::Index size() const { return x.size(); }
   [[nodiscard]] const std::vector<Unknown>& unknowns() const { return unknowns_; }

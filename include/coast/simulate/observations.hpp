@@ -63,7 +63,10 @@ struct SimulatedObservations {
 /// are the broadcast ones of a constellation of equally spaced satellites; errors of orbits and satellite clocks, which are the
 /// same for both receivers, are left out.
 ///
-///     P = rho + c (dt_r - dt_s) + T + I f1^2/f^2 + m + e,   Phi = rho + c (dt_r - dt_s) + T - I f1^2/f^2 + lambda N + m + e
+///     P = rho + c (dt_r - dt_s) + T + I f1^2/f^2 + m + e,   Phi = rho + c (dt_r - dt_s) + T - I f1^2/f^2 + lambda (N + w) + m
+///     + e
+///
+/// w: carrier::wind_up, of the rover's antenna with the body's attitude, the base's upright and to the north.
 ///
 /// @throws std::invalid_argument  a rate or an sd outside its range, a system without simulated satellites
 [[nodiscard]] SimulatedObservations simulate_observations(const AnalyticTrajectory& motion, geo::GpsTime start,
