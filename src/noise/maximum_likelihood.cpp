@@ -1,3 +1,6 @@
+#include <cmath>
+#include <optional>
+
 #include "bounded_search.hpp"
 #include "coast/noise/estimators.hpp"
 #include "polish.hpp"
@@ -5,6 +8,8 @@
 namespace coast::noise {
 
 namespace {
+
+constexpr double kNear = 3.0;  // of log-likelihood: what is further below before it is polished does not come up
 
 /// Variances that start at nothing are lifted to where the likelihood's slope in their logarithm can be told from zero: at
 /// nothing every start is a stationary point.
@@ -16,72 +21,142 @@ void lift_from_zero(const Likelihood& likelihood, const std::vector<Interval>& b
       u[i] = std::clamp(box[i].upper - kSmall, box[i].lower, box[i].upper);
 }
 
+/// A start that has nothing to do with the given one: rates evenly apart, in logarithms, over what the record holds. Nothing
+/// with fewer than two rates: such sums have one top as a rule, larger ones may have another where two processes share the work
+/// of one.
+std::optional<std::vector<double>> spread_start(const SumModel& model, const std::vector<Interval>& box,
+                                                std::vector<double> u) {
+  std::vector<std::size_t> rates;
+  for (std::size_t i = 0; i < u.size(); ++i)
+    if (model.parameter(i).kind == ParameterInfo::Kind::kRate && box[i].lower < box[i].upper) rates.push_back(i);
+  if (rates.size() < 2) return {};
+  for (std::size_t k = 0; k < rates.size(); ++k) {
+    const Interval& range = box[rates[k]];
+    const double along = static_cast<double>(k + 1) / static_cast<double>(rates.size() + 1);
+    u[rates[k]] = range.lower + along * (range.upper - range.lower);
+  }
+  return u;
+}
+
+/// The way up, on a stand-in of a long record and then on all of it.
+class Ascent {
+ public:
+  Ascent(const Likelihood& likelihood, std::vector<Interval> box, const MaximumLikelihoodOptions& options)
+      : likelihood_(likelihood), shortened_(likelihood), box_(std::move(box)), options_(options) {}
+
+  [[nodiscard]] Fit from(const std::vector<double>& start);
+
+ private:
+  [[nodiscard]] bool is_long() const { return options_.pyramid && !shortened_.is_whole(); }
+  template <class Of>
+  [[nodiscard]] SearchResult search(const Of& of, const std::vector<double>& start) const;
+  void on_stand_in(Fit& fit);
+  void finish(Fit& fit) const;
+  void try_without(Fit& fit) const;
+  void try_elsewhere(Fit& fit) const;
+
+  const Likelihood& likelihood_;
+  ShortLikelihood shortened_;
+  std::vector<Interval> box_;
+  const MaximumLikelihoodOptions& options_;
+  Eigen::MatrixXd excess_;
+};
+
+template <class Of>
+SearchResult Ascent::search(const Of& of, const std::vector<double>& start) const {
+  constexpr int kIterations = 30;
+  constexpr double kGradient = 1e-3;
+  return search_within(start, box_, kGradient, kIterations, [&](const std::vector<double>& u, Eigen::VectorXd& gradient) {
+    const LikelihoodSlope at = of.slope(u);
+    gradient = -at.gradient;
+    return -at.log_likelihood;
+  });
+}
+
+void Ascent::on_stand_in(Fit& fit) {
+  constexpr int kSteps = 12;
+  constexpr double kTolerance = 1e-5;
+  const auto slope = [&](const std::vector<double>& u) { return shortened_.slope(u); };
+  fit.u = search(shortened_, fit.u).u;
+  polish(slope, likelihood_.model(), box_, {}, {.tolerance = kTolerance, .steps = kSteps}, fit);
+  fit.trace.clear();
+  fit.passes = 0;
+  excess_ = excess_curvature(slope, fit.u);
+}
+
+/// Where the information is too poor a curvature, along a flat ridge, the steps get too short; then the curvature itself
+/// counts.
+void Ascent::finish(Fit& fit) const {
+  const auto slope = [&](const std::vector<double>& u) { return likelihood_.slope(u); };
+  polish(slope, likelihood_.model(), box_, excess_, {.tolerance = options_.tolerance}, fit);
+  if (fit.converged) return;
+  const Eigen::MatrixXd excess = excess_curvature(slope, fit.u);
+  fit.passes += static_cast<int>(2 * fit.u.size() + 1);
+  polish(slope, likelihood_.model(), box_, excess, {.tolerance = options_.tolerance}, fit);
+}
+
+void take_if_better(const Fit& other, Fit& fit) {
+  fit.passes += other.passes;
+  if (!(other.log_likelihood > fit.log_likelihood)) return;
+  fit.u = other.u;
+  fit.log_likelihood = other.log_likelihood;
+  fit.converged = other.converged;
+  fit.trace.push_back(other.log_likelihood);
+}
+
 /// A likelihood may have a second top where a process is not there. Where the sum without it is nearly as likely, its top is
 /// looked for too.
-void try_without(const Likelihood& likelihood, const std::vector<Interval>& box, const Eigen::MatrixXd& excess,
-                 double tolerance, Fit& fit) {
-  constexpr double kNear = 3.0;  // of log-likelihood, before the others have moved
-  for (std::size_t i = 0; i < box.size(); ++i) {
-    if (likelihood.model().parameter(i).kind != ParameterInfo::Kind::kVariance || fit.u[i] <= box[i].lower) continue;
+void Ascent::try_without(Fit& fit) const {
+  for (std::size_t i = 0; i < box_.size(); ++i) {
+    if (likelihood_.model().parameter(i).kind != ParameterInfo::Kind::kVariance || fit.u[i] <= box_[i].lower) continue;
     Fit other;
     other.u = fit.u;
-    other.u[i] = box[i].lower;
+    other.u[i] = box_[i].lower;
     ++fit.passes;
-    if (likelihood.value(other.u).log_likelihood < fit.log_likelihood - kNear) continue;
-    polish([&](const std::vector<double>& u) { return likelihood.slope(u); }, likelihood.model(), box, excess,
-           {.tolerance = tolerance}, other);
-    fit.passes += other.passes;
-    if (!(other.log_likelihood > fit.log_likelihood)) continue;
-    fit.u = other.u;
-    fit.log_likelihood = other.log_likelihood;
-    fit.converged = other.converged;
-    fit.trace.push_back(other.log_likelihood);
+    if (likelihood_.value(other.u).log_likelihood < fit.log_likelihood - kNear) continue;
+    finish(other);
+    take_if_better(other, fit);
   }
+}
+
+void Ascent::try_elsewhere(Fit& fit) const {
+  const auto elsewhere = spread_start(likelihood_.model(), box_, fit.u);
+  if (!elsewhere) return;
+  Fit other;
+  other.u = search(shortened_, *elsewhere).u;
+  if (shortened_.value(other.u) < shortened_.value(fit.u) - kNear) return;
+  finish(other);
+  take_if_better(other, fit);
+}
+
+Fit Ascent::from(const std::vector<double>& start) {
+  Fit fit;
+  fit.u = start;
+  for (std::size_t i = 0; i < box_.size(); ++i) fit.u[i] = std::clamp(fit.u[i], box_[i].lower, box_[i].upper);
+  lift_from_zero(likelihood_, box_, fit.u);
+  if (is_long()) {
+    on_stand_in(fit);
+  } else {
+    const SearchResult found = search(likelihood_, fit.u);
+    fit.u = found.u;
+    fit.passes += found.evaluations;
+    for (const double value : found.trace) fit.trace.push_back(-value);
+  }
+  if (!options_.polished) {
+    fit.log_likelihood = shortened_.value(fit.u);
+    return fit;
+  }
+  finish(fit);
+  try_without(fit);
+  try_elsewhere(fit);
+  return fit;
 }
 
 }  // namespace
 
 Fit fit_maximum_likelihood(const Likelihood& likelihood, const std::vector<double>& start,
                            const MaximumLikelihoodOptions& options) {
-  constexpr int kIterations = 30;
-  constexpr int kShortSteps = 12;
-  constexpr double kGradient = 1e-3;
-  constexpr double kShortTolerance = 1e-5;
-  const std::vector<Interval> box = box_of(likelihood, start, options.fixed);
-  Fit fit;
-  fit.u = start;
-  for (std::size_t i = 0; i < box.size(); ++i) fit.u[i] = std::clamp(fit.u[i], box[i].lower, box[i].upper);
-  lift_from_zero(likelihood, box, fit.u);
-  const auto search = [&](const auto& of) {
-    return search_within(fit.u, box, kGradient, kIterations, [&](const std::vector<double>& u, Eigen::VectorXd& gradient) {
-      const LikelihoodSlope at = of.slope(u);
-      gradient = -at.gradient;
-      return -at.log_likelihood;
-    });
-  };
-  Eigen::MatrixXd excess;
-  const ShortLikelihood shortened(likelihood);
-  if (options.pyramid && !shortened.is_whole()) {
-    fit.u = search(shortened).u;
-    polish([&](const std::vector<double>& u) { return shortened.slope(u); }, likelihood.model(), box, {},
-           {.tolerance = kShortTolerance, .steps = kShortSteps}, fit);
-    fit.trace.clear();
-    fit.passes = 0;
-    excess = excess_curvature([&](const std::vector<double>& u) { return shortened.slope(u); }, fit.u);
-  } else {
-    const SearchResult found = search(likelihood);
-    fit.u = found.u;
-    fit.passes += found.evaluations;
-    for (const double value : found.trace) fit.trace.push_back(-value);
-  }
-  if (options.polished) {
-    polish([&](const std::vector<double>& u) { return likelihood.slope(u); }, likelihood.model(), box, excess,
-           {.tolerance = options.tolerance}, fit);
-    try_without(likelihood, box, excess, options.tolerance, fit);
-  } else {
-    fit.log_likelihood = shortened.value(fit.u);
-  }
-  return fit;
+  return Ascent(likelihood, box_of(likelihood, start, options.fixed), options).from(start);
 }
 
 }  // namespace coast::noise
