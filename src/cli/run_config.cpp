@@ -155,6 +155,7 @@ void read_filter(const Node& filter, RunConfig& run) {
 
 void read_imu(const Node& imu, RunConfig& run, estimate::NoiseFitChoice& choice) {
   run.imu = io::ImuFileOptions::from(imu);
+  if (const auto levels = imu.find("noise_levels")) run.noise_levels = levels->path();
   run.setup.C_s_b = ins::C_s_b(ins::MountingOptions::from(imu));
   run.setup.model = noise::ImuErrorModel::from(io::load_yaml(imu.at("error_model").path()));
   run.setup.lever_arm_b = imu.at("lever_arm_m").vector3();

@@ -44,6 +44,7 @@ struct RunConfig {
   config::Node root;
   std::filesystem::path file;
   io::ImuFileOptions imu;
+  std::optional<std::filesystem::path> noise_levels;  ///< of the IMU over time
   io::GnssFileOptions gnss;
   std::optional<PpkConfig> ppk;  ///< in place of a file of positions
   bool tight = false;            ///< its observations, in place of its positions, go into the filter

@@ -171,7 +171,24 @@ void ForwardPass::propagate(const ins::RawIncrement& raw) {
   if (transition_.substep_due()) fold();
 }
 
+// The level at the middle of a fold holds for all of it.
+void ForwardPass::follow_noise_level() {
+  const std::vector<record::NoiseLevel>& levels = mission_.imu.noise;
+  if (levels.empty()) return;
+  const geo::GpsTime t = navigator_.nav().t - 0.5 * TransitionAccumulator::kSubstep;
+  const std::size_t before = noise_level_;
+  while (noise_level_ + 1 < levels.size() && levels[noise_level_].to <= t) ++noise_level_;
+  if (noise_level_ == before && noise_level_ > 0) return;
+  const auto scaled = [&](const Eigen::Vector3d& factors, const Eigen::Matrix3d& density_b) -> Eigen::Matrix3d {
+    const Eigen::Matrix3d root = mission_.C_s_b * factors.cwiseSqrt().asDiagonal() * mission_.C_s_b.transpose();
+    return root * density_b * root;
+  };
+  const record::NoiseLevel& level = levels[noise_level_];
+  transition_.set_white_noise(scaled(level.gyro, layout_.gyro_density_b()), scaled(level.accel, layout_.accel_density_b()));
+}
+
 void ForwardPass::fold() {
+  follow_noise_level();
   transition_.fold(navigator_.gravity_gradient());
   navigator_.advance_sensor_states();
 }

@@ -37,6 +37,7 @@ class ForwardPass {
   [[nodiscard]] double missing_share(double span) const;
   void add_gap_noise();
   void propagate(const ins::RawIncrement& raw);
+  void follow_noise_level();
   void fold();
   void close_interval();
   void knot();
@@ -68,6 +69,7 @@ class ForwardPass {
   bool have_knot_ = false;
 
   std::size_t next_sample_ = 0;
+  std::size_t noise_level_ = 0;  ///< of the recording, the one at hand
   ins::RawIncrement remainder_;
   std::size_t next_fix_ = 0;
   std::optional<TightCoupling> tight_;

@@ -17,6 +17,8 @@ int response_power(noise::Sensor sensor, int row) {
 TransitionAccumulator::TransitionAccumulator(const StateLayout& layout, double earth_rate)
     : layout_(layout),
       earth_rate_(earth_rate),
+      gyro_density_b_(layout.gyro_density_b()),
+      accel_density_b_(layout.accel_density_b()),
       Phi_n_(kNav, layout.sensor_end()),
       output_(layout.sensor_end() - kNav),
       middle_(output_),
@@ -137,8 +139,8 @@ void TransitionAccumulator::add_sensor_columns() {
 void TransitionAccumulator::add_white_noise() {
   const double h = pending_;
   const Eigen::Matrix3d C = sum_C_ / h;
-  const Eigen::Matrix3d q_a = h * (C * layout_.accel_density_b() * C.transpose());
-  const Eigen::Matrix3d q_g = h * (C * layout_.gyro_density_b() * C.transpose());
+  const Eigen::Matrix3d q_a = h * (C * accel_density_b_ * C.transpose());
+  const Eigen::Matrix3d q_g = h * (C * gyro_density_b_ * C.transpose());
   const Eigen::Matrix3d A = geo::skew(sum_f_);
   const Eigen::Matrix3d v_psi = -0.5 * (A * q_g);
   Q_n_.block<3, 3>(kPos, kPos) += (h * h / 3.0) * q_a;

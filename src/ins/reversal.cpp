@@ -22,6 +22,12 @@ void reverse(record::ImuRecording& recording, geo::GpsTime mirror, IncrementKind
   }
   std::reverse(recording.samples.begin(), recording.samples.end());
   std::reverse(recording.temperature.begin(), recording.temperature.end());
+  for (record::NoiseLevel& level : recording.noise) {
+    const geo::GpsTime to = mirrored(level.from, mirror);
+    level.from = mirrored(level.to, mirror);
+    level.to = to;
+  }
+  std::reverse(recording.noise.begin(), recording.noise.end());
 }
 
 void reverse(record::GnssRecording& recording, geo::GpsTime mirror) {

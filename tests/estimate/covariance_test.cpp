@@ -3,10 +3,13 @@
 
 #include <gtest/gtest.h>
 
+#include "coast/estimate/forward_filter.hpp"
 #include "coast/estimate/navigator.hpp"
 #include "coast/estimate/transition.hpp"
 #include "coast/geo/earth.hpp"
 #include "coast/geo/rotation.hpp"
+#include "coast/geo/units.hpp"
+#include "coast/ins/reversal.hpp"
 #include "estimate/mission.hpp"
 #include "support/malloc_guard.hpp"
 #include "support/support.hpp"
@@ -123,6 +126,38 @@ accel: {all: [{process: white_noise, density: 80, unit: ug/sqrt(Hz)}]}
   const Eigen::MatrixXd zero = Eigen::MatrixXd::Zero(layout_->size(), layout_->size());
   // The first fold of forty lacks the covariance of position with the tilt of the same fold: 1 / 40^2.
   EXPECT_LT(worst(composed(zero, 2.0, 2.0), brute_force(zero, 2.0)), 1e-3);
+}
+
+// At rest, without rotation: variance of the attitude is the integral of the density over time, for half a minute of noise in
+// three levels. Forwards, and the same recording backwards.
+TEST(NoiseLevels, AttitudeWalksAsTheyChange) {
+  const noise::ImuErrorModel model = test::error_model(R"(schema: coast.imu_error_model/1
+gyro: {all: [{process: white_noise, density: 0.2, unit: deg/sqrt(h)}]}
+accel: {all: [{process: white_noise, density: 80, unit: ug/sqrt(Hz)}]}
+)");
+  test::Recording recording = test::make_recording({.duration = 40.0}, nullptr, 1);
+  const geo::GpsTime begin = test::mission_start();
+  recording.imu.noise = {{begin - 1.0, begin + 10.0, {4.0, 1.0, 1.0}, Eigen::Vector3d::Ones()},
+                         {begin + 10.0, begin + 20.0, {0.25, 1.0, 9.0}, Eigen::Vector3d::Ones()},
+                         {begin + 20.0, begin + 30.0, {1.0, 1.0, 1.0}, Eigen::Vector3d::Ones()}};
+  recording.gnss.fixes.clear();
+  const auto grown = [&](const record::ImuRecording& imu, geo::GpsTime from, geo::GpsTime to, double earth_rate) {
+    Mission mission{imu, recording.gnss};
+    mission.earth_rate = earth_rate;
+    const ForwardFilter filter(mission, model, {});
+    FilterState state{recording.truth(begin), Eigen::VectorXd::Zero(filter.layout().size()), {}};
+    state.nav.t = from;
+    state.P = Eigen::MatrixXd::Identity(filter.layout().size(), filter.layout().size()) * 1e-30;
+    return filter.run_until(state, to, {}).last.P.block<3, 3>(kPsi, kPsi).trace();
+  };
+  const double density = std::pow(0.2 * geo::kDegree / 60.0, 2);  // rad^2/s, each axis
+  const double expected = density * (10.0 * 6.0 + 10.0 * 10.25 + 5.0 * 3.0);
+  EXPECT_NEAR(grown(recording.imu, begin, begin + 25.0, geo::kEarthRate) / expected, 1.0, 1e-3);  // a fold, 0.05 s of 25
+  const geo::GpsTime mirror = begin + 20.0;
+  ins::reverse(recording.imu, mirror);
+  // From the end: 15 s without a level (the last one's), 10 s each.
+  const double backward = density * (15.0 * 3.0 + 10.0 * 10.25 + 5.0 * 6.0);
+  EXPECT_NEAR(grown(recording.imu, begin + 5.0, begin + 35.0, -geo::kEarthRate) / backward, 1.0, 1e-3);
 }
 
 TEST_F(Covariance, DrivingNoiseWithinAnIntervalIsOfFirstOrderInIt) {

@@ -8,6 +8,7 @@
 #include "coast/io/gnss.hpp"
 #include "coast/io/imu.hpp"
 #include "coast/io/inspect.hpp"
+#include "coast/io/noise_levels.hpp"
 #include "coast/io/products.hpp"
 #include "coast/io/reference.hpp"
 #include "coast/io/rinex.hpp"
@@ -36,6 +37,15 @@ void check(const record::ImuRecording& imu) {
     require(s.dtheta.allFinite() && s.dv.allFinite(), "increments are finite");
   }
   (void)io::inspect(imu);
+}
+
+void check(const std::vector<record::NoiseLevel>& levels) {
+  require(levels.size() >= 2, "at least two levels");
+  for (const record::NoiseLevel& level : levels) {
+    require(level.from < level.to, "levels last");
+    require((level.gyro.array() > 0.0).all() && level.gyro.allFinite(), "noise is above zero");
+    require((level.accel.array() > 0.0).all() && level.accel.allFinite(), "noise is above zero");
+  }
 }
 
 void check(const record::GnssRecording& gnss) {
@@ -195,6 +205,10 @@ void rinex_clock(std::string_view bytes) {
   read_and_check([&] { return io::read_clocks({as_file(bytes)}); });
 }
 
+void noise_levels(std::string_view bytes) {
+  read_and_check([&] { return io::read_noise_levels(as_file(bytes)); });
+}
+
 void antex(std::string_view bytes) {
   read_and_check([&] { return io::read_antex(as_file(bytes)); });
 }
@@ -226,6 +240,7 @@ const std::vector<Entry>& entries() {
       {"sp3", sp3},
       {"rinex_clock", rinex_clock},
       {"antex", antex},
+      {"noise_levels", noise_levels},
       {"yaml", yaml},
   };
   return table;

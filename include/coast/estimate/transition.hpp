@@ -41,6 +41,11 @@ class TransitionAccumulator {
   TransitionAccumulator(const StateLayout& layout, double earth_rate);
 
   void reset();
+  /// White noise from here on, body axes, [(rad/s)^2/Hz], [(m/s^2)^2/Hz]; the layout's before.
+  void set_white_noise(const Eigen::Matrix3d& gyro_density_b, const Eigen::Matrix3d& accel_density_b) {
+    gyro_density_b_ = gyro_density_b;
+    accel_density_b_ = accel_density_b;
+  }
   void add(const SampleDynamics& sample);
   [[nodiscard]] bool substep_due() const { return substep_due(pending_); }
   /// Folds what is pending. @param gravity_gradient dg/dr at the position, 1/s^2
@@ -65,6 +70,7 @@ class TransitionAccumulator {
 
   const StateLayout& layout_;
   double earth_rate_;
+  Eigen::Matrix3d gyro_density_b_, accel_density_b_;
   NavRows Phi_n_;
   NavCov Q_n_;
   int gyro_states_ = 0;

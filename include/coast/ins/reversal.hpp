@@ -26,7 +26,7 @@ namespace coast::ins {
 enum class IncrementKind { kRaw, kCompensated };
 
 /// Reverses a recording in place: order, time tags (the tag of a sample is again the end of its interval, the mirrored start),
-/// sign of rotation. Temperatures follow their samples; times of events stay those of the original. Reversing twice restores
+/// sign of rotation. Temperatures follow their samples, noise levels their time; times of events stay those of the original. Reversing twice restores
 /// it.
 /// @note time tags are those of the intervals' starts, t - dt rounded to 1 ns: they keep strictly increasing.
 void reverse(record::ImuRecording& recording, geo::GpsTime mirror, IncrementKind kind = IncrementKind::kRaw);

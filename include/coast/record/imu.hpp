@@ -17,12 +17,20 @@ struct ImuSample {
   Eigen::Vector3d dv;      ///< integral of f_ib, m/s
 };
 
+/// By what an IMU's white noise differs from its mean for a while: factors on the densities [power] of the error model.
+struct NoiseLevel {
+  geo::GpsTime from, to;
+  Eigen::Vector3d gyro = Eigen::Vector3d::Ones();  ///< sensor's axes
+  Eigen::Vector3d accel = Eigen::Vector3d::Ones();
+};
+
 /// One IMU as recorded, in the sensor's own axes unless a function says otherwise. Strictly increasing in time.
 struct ImuRecording {
   std::string source;  ///< file, for messages
   std::vector<ImuSample> samples;
   std::vector<float> temperature;  ///< degC, one per sample, or empty
   double rate_hz = 0.0;            ///< 1 / median interval
+  std::vector<NoiseLevel> noise;   ///< in order, one where the other ends; empty: the same all the time
   Events events;                   ///< repairs and gaps found on reading
 };
 
