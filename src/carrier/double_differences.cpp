@@ -202,7 +202,9 @@ DoubleDifferences double_differences(const DifferenceEpoch& epoch, const Relativ
   Eigen::Index differences = 0;
   for (Eigen::Index begin = 0, end = 0; begin < n; begin = end) {
     while (end < n && all[static_cast<std::size_t>(end)].group == all[static_cast<std::size_t>(begin)].group) ++end;
-    blocks.emplace_back(begin, complement(nuisances(rows.subspan(begin, end - begin), epoch, weighting)));
+    blocks.emplace_back(
+        begin, complement(nuisances(rows.subspan(static_cast<std::size_t>(begin), static_cast<std::size_t>(end - begin)), epoch,
+                                    weighting)));
     differences += blocks.back().second.rows();
   }
   dd.B.setZero(differences, n);
