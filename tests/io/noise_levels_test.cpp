@@ -10,14 +10,14 @@
 namespace coast::io {
 namespace {
 
-constexpr const char* kHeader =
+constexpr const char* kLevelHeader =
     "gps_week,sow_s,gyro_x_radps_rthz,gyro_y_radps_rthz,gyro_z_radps_rthz,accel_x_mps2_rthz,accel_y_mps2_rthz,accel_z_mps2_"
     "rthz\n";
 
 TEST(NoiseLevels, AreRelativeToTheirMeans) {
   const test::Files files;
   const auto levels = read_noise_levels(files.put(
-      "noise.csv", std::string(kHeader) + "2300,100,1e-3,1,2,3,4,5\n2300,103,2e-3,1,2,3,4,5\n2300,104,1e-3,1,2,6,4,5\n"));
+      "noise.csv", std::string(kLevelHeader) + "2300,100,1e-3,1,2,3,4,5\n2300,103,2e-3,1,2,3,4,5\n2300,104,1e-3,1,2,6,4,5\n"));
   ASSERT_EQ(levels.size(), 3U);
   EXPECT_EQ(levels[0].to, levels[1].from);
   EXPECT_EQ(levels[2].to - levels[2].from, 1.0);  // as long as the one before
@@ -32,7 +32,7 @@ TEST(NoiseLevels, SpoiledFilesAreRefusedWithTheirLine) {
   const auto refused = [](const std::string& rows, const char* said) {
     const test::Files files;
     try {
-      (void)read_noise_levels(files.put("noise.csv", kHeader + rows));
+      (void)read_noise_levels(files.put("noise.csv", kLevelHeader + rows));
       ADD_FAILURE() << rows;
     } catch (const InputError& e) {
       EXPECT_NE(std::string(e.what()).find(said), std::string::npos) << e.what();
