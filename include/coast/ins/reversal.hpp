@@ -26,8 +26,8 @@ namespace coast::ins {
 enum class IncrementKind { kRaw, kCompensated };
 
 /// Reverses a recording in place: order, time tags (the tag of a sample is again the end of its interval, the mirrored start),
-/// sign of rotation. Temperatures follow their samples, noise levels their time; times of events stay those of the original. Reversing twice restores
-/// it.
+/// sign of rotation. Temperatures follow their samples, noise levels their time; times of events stay those of the original.
+/// Reversing twice restores it.
 /// @note time tags are those of the intervals' starts, t - dt rounded to 1 ns: they keep strictly increasing.
 void reverse(record::ImuRecording& recording, geo::GpsTime mirror, IncrementKind kind = IncrementKind::kRaw);
 
