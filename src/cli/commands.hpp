@@ -37,6 +37,10 @@ void estimator_study(const std::filesystem::path& study_yaml, const CommonOption
 void ppk(const std::filesystem::path& input, const CommonOptions& options);
 /// The ppk.yaml of the help page, every line behind `indent`.
 [[nodiscard]] std::string ppk_example(const std::string& indent);
+/// `coast synth array.yaml`: several IMUs -> imu.csv, noise.csv, error_model.yaml, synth.json, report.html.
+void synth(const std::filesystem::path& array_yaml, const CommonOptions& options);
+/// The array.yaml of the help page, every line behind `indent`.
+[[nodiscard]] std::string array_example(const std::string& indent);
 /// `coast compare a.nav b.nav`: differences a - b in N, E, D and attitude.
 void compare(const std::filesystem::path& a, const std::filesystem::path& b, const Eigen::Vector3d& lever_arm_b,
              const CommonOptions& options);

@@ -80,6 +80,12 @@ int run(int argc, char** argv) {
   ppk->footer(fmt::format("Example:\n  coast ppk ppk.yaml --out positions\n\nppk.yaml:\n{}", coast::cli::ppk_example("  ")));
   ppk->callback([&] { coast::cli::ppk(input, common); });
 
+  auto* synth = subcommand(app, "synth", "several IMUs -> one synthetic IMU: mean, weighted, garch or corrected", "", common);
+  synth->add_option("array", input, "array.yaml")->required();
+  synth->footer(
+      fmt::format("Example:\n  coast synth array.yaml --out synthetic\n\narray.yaml:\n{}", coast::cli::array_example("  ")));
+  synth->callback([&] { coast::cli::synth(input, common); });
+
   auto* compare = subcommand(app, "compare", "two trajectories: N, E, D and attitude differences, first minus second",
                              "coast compare results/trajectory.nav truth.nav", common);
   compare->add_option("first", input, ".nav, CSV or SBET")->required();

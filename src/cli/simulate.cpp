@@ -65,6 +65,23 @@ void write_observations(const simulate::Scenario& scenario, const simulate::Simu
                            list(observed.r_base_e))));
 }
 
+// The recordings of an array, each in its own axes and by its own clock, and the array.yaml that merges them. The mounting is
+// stated as it is; clocks are to be found.
+void write_array(const simulate::Scenario& scenario, const std::filesystem::path& out, int threads) {
+  if (scenario.array.empty()) return;
+  std::string text = "schema: coast.array/1\nimus:\n";
+  for (std::size_t k = 0; k < scenario.array.size(); ++k) {
+    const simulate::Scenario::ArrayImu& imu = scenario.array[k];
+    const std::string file = fmt::format("imu_{}.csv", imu.name);
+    io::write_imu_csv(out / file, simulate::simulate_array_imu(scenario, k, threads));
+    const Eigen::Matrix3d& axes = imu.mounting.axes;
+    text += fmt::format("  - {{name: {}, file: {}, gps_week: {}, axes: [{}, {}, {}], mounting_deg: {}, position_m: {}}}\n",
+                        imu.name, file, scenario.start.week(), axis_name(axes.row(0)), axis_name(axes.row(1)),
+                        axis_name(axes.row(2)), list(imu.mounting.mounting / geo::kDegree), list(imu.position_b));
+  }
+  io::write_text(out / "array.yaml", text);
+}
+
 }  // namespace
 
 void simulate(const std::filesystem::path& scenario_yaml, std::optional<std::uint64_t> seed, const CommonOptions& options) {
@@ -85,6 +102,7 @@ void simulate(const std::filesystem::path& scenario_yaml, std::optional<std::uin
   io::write_text(out / "error_model.yaml", scenario.error_model->yaml());
   io::write_text(out / "run.yaml", run_yaml(scenario, mission, positions_yaml(scenario)));
   if (scenario.observations) write_observations(scenario, mission, out);
+  write_array(scenario, out, static_cast<int>(threads));
   if (!options.quiet)
     fmt::print("{} IMU samples, {} fixes; process them with\n  coast process {}\n", mission.imu.samples.size(),
                mission.gnss.fixes.size(), (out / "run.yaml").string());

@@ -2,30 +2,12 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
-
-#include "coast/geo/units.hpp"
+#include "imu_units.hpp"
 #include "registry_lookup.hpp"
 
 namespace coast::io {
 
 namespace {
-
-/// Factor to SI from `units: {gyro: ..}` and `scale: {gyro: ..}`.
-double factor(const std::optional<config::Node>& units, const std::optional<config::Node>& scale, std::string_view sensor,
-              std::string_view default_unit, geo::Dimension dimension) {
-  double to_si = 1.0;
-  if (units) {
-    const std::string name = units->text(sensor, default_unit);
-    try {
-      to_si = geo::to_si(1.0, name, dimension);
-    } catch (const std::invalid_argument& e) {
-      throw units->at(sensor).error(e.what(), fmt::format("a unit like {}", default_unit), "");
-    }
-  }
-  if (scale) to_si *= scale->number(sensor, 1.0);
-  return to_si;
-}
 
 BinaryLayout binary_from(const config::Node& node) {
   BinaryLayout layout;
@@ -53,13 +35,9 @@ ImuFileOptions ImuFileOptions::from(const config::Node& imu) {
     o.accel_columns = Column::list_from(columns->at("accel"), 3);
     if (const auto t = columns->find("temperature")) o.temperature_column = Column::from(*t);
   }
-  const auto units = imu.find("units");
-  const auto scale = imu.find("scale");
-  using geo::Dimension;
-  o.gyro_to_si = o.increments ? factor(units, scale, "gyro", "rad", Dimension::kAngle)
-                              : factor(units, scale, "gyro", "rad/s", Dimension::kAngularRate);
-  o.accel_to_si = o.increments ? factor(units, scale, "accel", "m/s", Dimension::kVelocity)
-                               : factor(units, scale, "accel", "m/s^2", Dimension::kSpecificForce);
+  const ImuFactors factors = imu_factors(imu, o.increments);
+  o.gyro_to_si = factors.gyro;
+  o.accel_to_si = factors.accel;
   if (const auto binary = imu.find("binary")) o.binary = binary_from(*binary);
   return o;
 }

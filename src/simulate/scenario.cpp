@@ -160,6 +160,20 @@ geo::GpsTime read_start(const Node& root) {
   return geo::GpsTime::from_week(static_cast<int>(week), start->number_within("sow", 0.0, 0.0, 604799.999999999));
 }
 
+Scenario::ArrayImu read_array_imu(const Node& node, const TreeReader& read) {
+  Scenario::ArrayImu imu;
+  imu.name = node.at("name").text();
+  if (imu.name.empty() ||
+      imu.name.find_first_not_of("abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-") != std::string::npos)
+    throw node.at("name").error(imu.name, "letters, digits, _ and -: it names a file");
+  imu.error_model = noise::ImuErrorModel::from(read(node.at("error_model").path()));
+  imu.mounting = ins::MountingOptions::from(node);
+  imu.position_b = node.vector3("position_m", imu.position_b);
+  imu.clock_offset = node.number_within("clock_offset_s", 0.0, -10.0, 10.0);
+  imu.clock_drift_ppm = node.number_within("clock_drift_ppm", 0.0, -1e4, 1e4);
+  return imu;
+}
+
 StudiedOutage placed(const Scenario::Outage& outage, const MotionPlan& plan, geo::GpsTime start) {
   if (outage.manoeuvre.empty()) return {start + outage.elapsed, *outage.duration};
   std::string known;
@@ -197,6 +211,8 @@ Scenario Scenario::from(const Node& root, const TreeReader& read) {
   if (const auto observations = gnss.find("observations")) scenario.observations = read_observations(*observations);
   scenario.gnss.lever_arm_b = imu.vector3("lever_arm_m", Eigen::Vector3d::Zero());
   if (scenario.observations) scenario.observations->lever_arm_b = scenario.gnss.lever_arm_b;
+  if (const auto array = root.find("array"))
+    for (const Node& item : array->items()) scenario.array.push_back(read_array_imu(item, read));
   if (const auto outages = root.find("outages"))
     for (const Node& outage : outages->items()) scenario.outages.push_back(read_outage(outage, scenario.motion.duration));
   scenario.start = read_start(root);
@@ -227,6 +243,22 @@ ErrorFreeMission::ErrorFreeMission(const Scenario& scenario, int threads)
 ErrorFreeMission::Recordings ErrorFreeMission::recorded(const std::optional<noise::ImuErrorModel>& model,
                                                         std::uint64_t seed) const {
   return {model ? with_errors(increments_, *model, seed) : increments_, gnss_fixes(motion_, start_, gnss_, seed)};
+}
+
+record::ImuRecording simulate_array_imu(const Scenario& scenario, std::size_t index, int threads) {
+  constexpr std::uint64_t kOwnSeeds = 1000003;  // apart from those of the scenario's own IMU and of further seeds
+  const Scenario::ArrayImu& imu = scenario.array.at(index);
+  const AnalyticTrajectory motion = make_motion(scenario.kind, scenario.motion);
+  const double gain = 1.0 + 1e-6 * imu.clock_drift_ppm;
+  ImuSampling sampling;
+  sampling.start = scenario.start;
+  sampling.rate_hz = scenario.imu_rate_hz * gain;  // a clock that gains counts its intervals too soon
+  record::ImuRecording recording =
+      with_errors(true_increments(motion, sampling, {imu.position_b, ins::C_s_b(imu.mounting).transpose()}, threads),
+                  imu.error_model, scenario.seed + kOwnSeeds * (index + 1));
+  for (record::ImuSample& sample : recording.samples)
+    sample.t = scenario.start + (imu.clock_offset + gain * (sample.t - scenario.start));
+  return recording;
 }
 
 SimulatedMission simulate(const Scenario& scenario, int threads) {

@@ -9,6 +9,7 @@
 #include "coast/io/imu.hpp"
 #include "coast/io/inspect.hpp"
 #include "coast/io/noise_levels.hpp"
+#include "coast/io/packets.hpp"
 #include "coast/io/products.hpp"
 #include "coast/io/reference.hpp"
 #include "coast/io/rinex.hpp"
@@ -45,6 +46,16 @@ void check(const std::vector<record::NoiseLevel>& levels) {
     require(level.from < level.to, "levels last");
     require((level.gyro.array() > 0.0).all() && level.gyro.allFinite(), "noise is above zero");
     require((level.accel.array() > 0.0).all() && level.accel.allFinite(), "noise is above zero");
+  }
+}
+
+void check(const record::PacketRecording& recording) {
+  require(recording.packets.size() >= 2, "at least two packets");
+  require(recording.rates.size() == recording.packets.size() && recording.forces.size() == recording.packets.size(),
+          "a row of values for each packet");
+  for (const record::Packet& packet : recording.packets) {
+    require(packet.counter >= 0 && std::isfinite(packet.arrival_s), "counters and arrivals are numbers");
+    require(recording.rates.at(packet.row).allFinite() && recording.forces.at(packet.row).allFinite(), "values are finite");
   }
 }
 
@@ -209,6 +220,18 @@ void noise_levels(std::string_view bytes) {
   read_and_check([&] { return io::read_noise_levels(as_file(bytes)); });
 }
 
+void packets(std::string_view bytes) {
+  io::PacketFileOptions options;
+  options.file = as_file(bytes);
+  options.counter = "counter";
+  options.arrival = "arrival_s";
+  options.gps = "gps_s";
+  options.pulse = "pulse";
+  options.gyro = {"gx", "gy", "gz"};
+  options.accel = {"ax", "ay", "az"};
+  read_and_check([&] { return io::read_packets(options); });
+}
+
 void antex(std::string_view bytes) {
   read_and_check([&] { return io::read_antex(as_file(bytes)); });
 }
@@ -241,6 +264,7 @@ const std::vector<Entry>& entries() {
       {"rinex_clock", rinex_clock},
       {"antex", antex},
       {"noise_levels", noise_levels},
+      {"packets", packets},
       {"yaml", yaml},
   };
   return table;

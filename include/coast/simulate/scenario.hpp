@@ -56,6 +56,11 @@ struct StudiedOutage {
 ///         obstacles: [{elapsed_s: 300, duration_s: 60, azimuth_deg: [60, 200], below_deg: 50}]
 ///         slips_per_hour: 4                    # of each phase; and code_sd_m, phase_sd_m, code_multipath_sd_m, ...
 ///       degraded: [{elapsed_s: 500, duration_s: 30, quality: float, sd_factor: 30, stated_sd_factor: 10}]
+///     array:                                   # left out: one IMU; else further ones on the same body, each with noise of its
+///     own
+///       - {name: left, error_model: ../imu/xsens-dot.yaml, position_m: [0.1, -0.1, 0], axes: [x, y, z], mounting_deg: [0, 0,
+///       0],
+///          clock_offset_s: 0.004, clock_drift_ppm: 20}      # its tag is true time + offset + drift * elapsed
 ///     outages: [{manoeuvre: roundabout, duration_s: 20}, {elapsed_s: 500, duration_s: 60}]   # for the run to study
 ///     start_gps: {week: 2374, sow: 208800}
 ///     seed: 1
@@ -68,6 +73,16 @@ struct Scenario {
   ins::MountingOptions mounting;
   GnssOptions gnss;
   std::optional<ObservationOptions> observations;
+  /// One IMU of an array on the scenario's body.
+  struct ArrayImu {
+    std::string name;
+    noise::ImuErrorModel error_model;
+    ins::MountingOptions mounting;
+    Eigen::Vector3d position_b = Eigen::Vector3d::Zero();  ///< m, from the body's point
+    double clock_offset = 0.0;                             ///< s
+    double clock_drift_ppm = 0.0;
+  };
+  std::vector<ArrayImu> array;
   /// An outage of a scenario: at a time, or at the first manoeuvre of a name.
   struct Outage {
     std::string manoeuvre;           ///< empty where the time is given
@@ -120,6 +135,10 @@ class ErrorFreeMission {
   record::ImuRecording increments_;
   record::Trajectory truth_;
 };
+
+/// What an IMU of the scenario's array records, in its own axes and by its own clock.
+/// @param index  in `scenario.array`; seeds of its noise are its own
+[[nodiscard]] record::ImuRecording simulate_array_imu(const Scenario& scenario, std::size_t index, int threads = 1);
 
 /// One recording: the scenario's error model, the scenario's seed.
 /// @param threads  at least 1; the same bytes for any number

@@ -1,0 +1,177 @@
+#include "coast/array/assembly.hpp"
+
+#include <fmt/format.h>
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+
+#include "coast/array/channel.hpp"
+#include "coast/array/resample.hpp"
+
+namespace coast::array {
+
+namespace {
+
+constexpr double kShortest = 20.0;  // s in common, that tests of defects need
+
+/// The time that all recordings have in common.
+Grid common_grid(const std::vector<ArrayMember>& members, double rate_hz) {
+  Grid grid;
+  const record::ImuRecording& first = *members.front().recording;
+  grid.dt = 1.0 / (rate_hz > 0.0 ? rate_hz : first.rate_hz);
+  grid.start = first.samples.front().t - first.samples.front().dt;
+  geo::GpsTime end = first.samples.back().t;
+  for (const ArrayMember& member : members) {
+    const auto& samples = member.recording->samples;
+    grid.start = std::max(grid.start, samples.front().t - samples.front().dt);
+    end = std::min(end, samples.back().t);
+  }
+  const double seconds = end - grid.start;
+  if (seconds < kShortest)
+    throw std::invalid_argument(
+        fmt::format("the recordings have {:.1f} s in common, at least {:.0f} s are needed", std::max(seconds, 0.0), kShortest));
+  grid.samples = static_cast<std::size_t>(std::floor(seconds / grid.dt + 1e-6));
+  return grid;
+}
+
+Signals on_grid(const std::vector<ArrayMember>& members, const Grid& grid, const std::vector<std::optional<LagCurve>>& lags) {
+  Signals signals{grid.start, grid.dt, {}};
+  signals.sensors.resize(members.size());
+  tbb::parallel_for(std::size_t{0}, members.size(), [&](std::size_t k) {
+    LagOfTag lag;
+    if (k < lags.size() && lags[k]) lag = LinearLag{grid.start + lags[k]->reference_s, lags[k]->offset_s, lags[k]->drift_ppm};
+    signals.sensors[k] = resample(*members[k].recording, grid, lag);
+    signals.sensors[k].name = members[k].name;
+  });
+  return signals;
+}
+
+/// The stretch in which every recording has samples within the reach of resampling: its ends are no dropouts.
+void crop_ends(Signals& signals) {
+  constexpr double kMost = 2.0;  // s, at either end: what is missing for longer is a dropout
+  const auto whole = [&](std::size_t n) {
+    return std::ranges::all_of(signals.sensors, [n](const SensorSignals& sensor) { return sensor.usable[n] == kAllUsable; });
+  };
+  const auto most = static_cast<std::size_t>(kMost / signals.dt);
+  std::size_t first = 0;
+  std::size_t end = signals.samples();
+  while (first < std::min(most, end) && !whole(first)) ++first;
+  while (signals.samples() - end < most && end > first + 1 && !whole(end - 1)) --end;
+  if (first == most || signals.samples() - end == most) return;
+  for (SensorSignals& sensor : signals.sensors) {
+    sensor.values = sensor.values.middleCols(static_cast<Eigen::Index>(first), static_cast<Eigen::Index>(end - first)).eval();
+    sensor.usable = std::vector<std::uint8_t>(sensor.usable.begin() + static_cast<std::ptrdiff_t>(first),
+                                              sensor.usable.begin() + static_cast<std::ptrdiff_t>(end));
+  }
+  signals.start = signals.start + static_cast<double>(first) * signals.dt;
+}
+
+void say(record::Events& events, record::Event::Severity severity, const char* kind, std::string text) {
+  events.push_back({severity, kind, std::move(text), std::nullopt, 1});
+}
+
+/// Lags of all members against the first, in body axes as stated.
+std::vector<std::optional<LagCurve>> find_lags(Signals signals, const std::vector<SensorFrame>& frames,
+                                               const LagOptions& options, record::Events& events) {
+  turn_to_body(signals, frames);
+  std::vector<std::optional<LagCurve>> lags(frames.size());
+  tbb::parallel_for(std::size_t{1}, frames.size(), [&](std::size_t k) {
+    lags[k] = lag_curve(signals.sensors.front(), signals.sensors[k], signals.dt, options);
+    // One window knows no drift.
+    if (lags[k] && !std::isfinite(lags[k]->drift_sigma_ppm)) lags[k]->drift_ppm = 0.0;
+  });
+  for (std::size_t k = 1; k < frames.size(); ++k)
+    if (!lags[k])
+      say(events, record::Event::Severity::kWarning, "no_lag",
+          fmt::format("{}: too little motion to match its time with {}'s; its time tags are believed", signals.sensors[k].name,
+                      signals.sensors.front().name));
+  return lags;
+}
+
+/// What is left after lags were taken out, on top of these: where a clock drifts, a window's lag is that of the motion in it,
+/// and where in the window that was is known the better the less it drifts.
+void add_remaining(std::vector<std::optional<LagCurve>>& lags, const std::vector<std::optional<LagCurve>>& left) {
+  for (std::size_t k = 0; k < lags.size(); ++k) {
+    if (!lags[k] || !left[k]) continue;
+    LagCurve sum = *left[k];
+    for (Lag& window : sum.windows) window.lag_s += lags[k]->at(window.at_s);
+    sum.offset_s += lags[k]->at(sum.reference_s);
+    sum.drift_ppm += lags[k]->drift_ppm;
+    lags[k] = sum;
+  }
+}
+
+std::vector<SensorFrame> stated_frames(const std::vector<ArrayMember>& members) {
+  std::vector<SensorFrame> frames;
+  for (const ArrayMember& member : members) frames.push_back(member.frame);
+  return frames;
+}
+
+void refine_frames(const Signals& sensor_axes, const AssemblyOptions& options, Assembly& assembly) {
+  if (!options.mounting) return;
+  try {
+    assembly.mounting = refine_mounting(sensor_axes, assembly.frames, *options.mounting);
+  } catch (const std::invalid_argument& error) {
+    say(assembly.events, record::Event::Severity::kWarning, "mounting_as_stated",
+        fmt::format("the mounting is left as stated: {}", error.what()));
+    return;
+  }
+  for (std::size_t k = 0; k < assembly.frames.size(); ++k) assembly.frames[k] = assembly.mounting->sensors[k].frame;
+}
+
+/// After a jump of its bias a sensor is of use again, with the bias that it had in its first stretch in order.
+void undo_bias_jumps(Signals& signals, const std::vector<BiasRun>& runs) {
+  for (std::size_t i = 0; i < runs.size(); ++i) {
+    const auto first = std::ranges::find(runs, runs[i].sensor, &BiasRun::sensor);
+    const Channels jump = runs[i].bias - first->bias;
+    if (first->from == runs[i].from || jump.isZero(0.0)) continue;
+    const auto from = static_cast<Eigen::Index>(runs[i].from);
+    const auto count = static_cast<Eigen::Index>(runs[i].to - runs[i].from);
+    signals.sensors.at(runs[i].sensor).values.middleCols(from, count).colwise() -= jump;
+  }
+}
+
+}  // namespace
+
+Assembly assemble(const std::vector<ArrayMember>& members, const AssemblyOptions& options,
+                  const std::function<void(const char*, double)>& progress) {
+  if (members.size() < 2) throw std::invalid_argument(fmt::format("{} IMUs: an array has two or more", members.size()));
+  const auto tell = [&](const char* what, double share) {
+    if (progress) progress(what, share);
+  };
+  Assembly assembly;
+  assembly.frames = stated_frames(members);
+  const Grid grid = common_grid(members, options.rate_hz);
+  tell("resampling", 0.0);
+  assembly.signals = on_grid(members, grid, {});
+  if (options.lags) {
+    tell("matching times", 0.2);
+    assembly.lags = find_lags(assembly.signals, assembly.frames, *options.lags, assembly.events);
+    assembly.signals = on_grid(members, grid, assembly.lags);
+    record::Events said_already;
+    add_remaining(assembly.lags, find_lags(assembly.signals, assembly.frames, *options.lags, said_already));
+    assembly.signals = on_grid(members, grid, assembly.lags);
+  }
+  crop_ends(assembly.signals);
+  tell("refining the mounting", 0.4);
+  refine_frames(assembly.signals, options, assembly);
+  turn_to_body(assembly.signals, assembly.frames);
+  const AngularMotion motion = angular_motion(assembly.signals);
+  assembly.differentiator_half_width = motion.half_width;
+  assembly.alpha_error_sd = motion.error_sd;
+  move_to_origin(assembly.signals, assembly.frames, motion);
+  if (options.defects) {
+    tell("testing for defects", 0.6);
+    assembly.defects = find_defects(assembly.signals, *options.defects);
+    exclude(assembly.signals, assembly.defects);
+    undo_bias_jumps(assembly.signals, assembly.defects.biases);
+  }
+  tell("taking off offsets", 0.9);
+  assembly.levelled = assembly.signals;
+  static_cast<void>(take_off_relative_offsets(assembly.levelled, options.offset_window_s));
+  return assembly;
+}
+
+}  // namespace coast::array

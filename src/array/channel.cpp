@@ -1,0 +1,195 @@
+#include "coast/array/channel.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+
+#include "residuals.hpp"
+
+namespace coast::array {
+
+namespace {
+
+/// Sample blocks of about the same length that cover all samples.
+struct Blocking {
+  std::size_t length = 1;
+  std::size_t count = 1;
+  std::size_t samples = 0;
+
+  Blocking(std::size_t all, double window, double dt) : samples(all) {
+    length = std::clamp<std::size_t>(static_cast<std::size_t>(std::lround(window / dt)), 1, std::max<std::size_t>(all, 1));
+    count = std::max<std::size_t>(1, all / length);
+  }
+  [[nodiscard]] std::size_t first(std::size_t block) const { return block * length; }
+  [[nodiscard]] std::size_t end(std::size_t block) const { return block + 1 == count ? samples : (block + 1) * length; }
+};
+
+/// Offsets of the sensors about their mean in one block, by least squares: z_k[n] = common[n] + b_k, sum b_k = 0. Sensors come
+/// and go, so the mean of those that are there is corrected for whose bias it contains, until nothing moves.
+Eigen::VectorXd offsets_in_block(const Signals& signals, int channel, std::size_t from, std::size_t to) {
+  constexpr int kSweeps = 6;
+  const std::size_t sensors = signals.sensors.size();
+  Eigen::VectorXd offset = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(sensors));
+  for (int sweep = 0; sweep < kSweeps; ++sweep) {
+    Eigen::VectorXd sum = Eigen::VectorXd::Zero(offset.size());
+    Eigen::VectorXd count = Eigen::VectorXd::Zero(offset.size());
+    for (std::size_t n = from; n < to; ++n) {
+      double common = 0.0;
+      int present = 0;
+      for (std::size_t k = 0; k < sensors; ++k) {
+        if (!signals.sensors[k].may_use(channel, n)) continue;
+        common += signals.sensors[k].values(channel, static_cast<Eigen::Index>(n)) - offset(static_cast<Eigen::Index>(k));
+        ++present;
+      }
+      if (present < 2) continue;
+      common /= present;
+      for (std::size_t k = 0; k < sensors; ++k) {
+        if (!signals.sensors[k].may_use(channel, n)) continue;
+        sum(static_cast<Eigen::Index>(k)) += signals.sensors[k].values(channel, static_cast<Eigen::Index>(n)) - common;
+        count(static_cast<Eigen::Index>(k)) += 1.0;
+      }
+    }
+    const Eigen::VectorXd before = offset;
+    for (Eigen::Index k = 0; k < offset.size(); ++k)
+      if (count(k) > 0.0) offset(k) = sum(k) / count(k);
+    offset.array() -= offset.mean();
+    if ((offset - before).cwiseAbs().maxCoeff() <= 1e-12 * (1.0 + offset.cwiseAbs().maxCoeff())) break;
+  }
+  return offset;
+}
+
+/// Straight lines between the middles of the blocks, constant before the first and after the last.
+double between_blocks(const Eigen::Ref<const Eigen::RowVectorXd>& at_middles, double block) {
+  const Eigen::Index last = at_middles.size() - 1;
+  if (block <= 0.0) return at_middles(0);
+  if (block >= static_cast<double>(last)) return at_middles(last);
+  const auto left = static_cast<Eigen::Index>(block);
+  const double share = block - static_cast<double>(left);
+  return (1.0 - share) * at_middles(left) + share * at_middles(left + 1);
+}
+
+/// Residual variances of one block about their own mean, and who has enough samples.
+struct BlockVariances {
+  std::vector<std::size_t> sensors;
+  std::vector<double> variances;
+};
+
+BlockVariances block_variances(const Signals& signals, const Eigen::MatrixXd& y, int channel, std::size_t from,
+                               std::size_t to) {
+  BlockVariances result;
+  for (std::size_t k = 0; k < signals.sensors.size(); ++k) {
+    double sum = 0.0;
+    double squares = 0.0;
+    double count = 0.0;
+    for (std::size_t n = from; n < to; ++n) {
+      if (!signals.sensors[k].may_use(channel, n)) continue;
+      const double value = y(static_cast<Eigen::Index>(k), static_cast<Eigen::Index>(n));
+      sum += value;
+      squares += value * value;
+      count += 1.0;
+    }
+    if (count < 2.0 || 2.0 * count < static_cast<double>(to - from)) continue;
+    result.sensors.push_back(k);
+    result.variances.push_back(std::max(0.0, (squares - sum * sum / count) / (count - 1.0)));
+  }
+  return result;
+}
+
+}  // namespace
+
+std::vector<double> own_variances(std::span<const double> residual_variances) {
+  if (residual_variances.size() < 2)
+    throw std::invalid_argument(fmt::format("own_variances: {} sensors, at least 2", residual_variances.size()));
+  std::vector<double> own(residual_variances.begin(), residual_variances.end());
+  solve_own_variances(own);
+  return own;
+}
+
+std::vector<Eigen::Matrix<double, kChannels, Eigen::Dynamic>> take_off_relative_offsets(Signals& signals, double window_s) {
+  const Blocking blocks(signals.samples(), window_s, signals.dt);
+  const std::size_t sensors = signals.sensors.size();
+  std::vector<Eigen::Matrix<double, kChannels, Eigen::Dynamic>> offsets(sensors);
+  for (auto& own : offsets) own.resize(kChannels, static_cast<Eigen::Index>(blocks.count));
+  for (int c = 0; c < kChannels; ++c) {
+    for (std::size_t b = 0; b < blocks.count; ++b) {
+      const Eigen::VectorXd offset = offsets_in_block(signals, c, blocks.first(b), blocks.end(b));
+      for (std::size_t k = 0; k < sensors; ++k)
+        offsets[k](c, static_cast<Eigen::Index>(b)) = offset(static_cast<Eigen::Index>(k));
+    }
+    for (std::size_t k = 0; k < sensors; ++k)
+      for (std::size_t n = 0; n < signals.samples(); ++n)
+        signals.sensors[k].values(c, static_cast<Eigen::Index>(n)) -=
+            between_blocks(offsets[k].row(c), (static_cast<double>(n) + 0.5) / static_cast<double>(blocks.length) - 0.5);
+  }
+  return offsets;
+}
+
+Eigen::MatrixXd residuals(const Signals& signals, int channel) {
+  const auto samples = static_cast<Eigen::Index>(signals.samples());
+  Eigen::MatrixXd y = Eigen::MatrixXd::Zero(static_cast<Eigen::Index>(signals.sensors.size()), samples);
+  for (Eigen::Index n = 0; n < samples; ++n) {
+    const double mean = plain_mean(signals, channel, static_cast<std::size_t>(n));
+    for (std::size_t k = 0; k < signals.sensors.size(); ++k)
+      if (signals.sensors[k].may_use(channel, static_cast<std::size_t>(n)))
+        y(static_cast<Eigen::Index>(k), n) = signals.sensors[k].values(channel, n) - mean;
+  }
+  return y;
+}
+
+NoiseOverTime noise_over_time(const Signals& signals, int channel, double window_s) {
+  const Blocking blocks(signals.samples(), window_s, signals.dt);
+  const Eigen::MatrixXd y = residuals(signals, channel);
+  NoiseOverTime noise;
+  noise.block = blocks.length;
+  noise.variance = Eigen::MatrixXd::Constant(y.rows(), static_cast<Eigen::Index>(blocks.count), -1.0);
+  for (std::size_t b = 0; b < blocks.count; ++b) {
+    const BlockVariances found = block_variances(signals, y, channel, blocks.first(b), blocks.end(b));
+    if (found.sensors.size() < 2) continue;
+    const std::vector<double> own = own_variances(found.variances);
+    for (std::size_t i = 0; i < own.size(); ++i)
+      noise.variance(static_cast<Eigen::Index>(found.sensors[i]), static_cast<Eigen::Index>(b)) = own[i];
+  }
+  for (Eigen::Index k = 0; k < y.rows(); ++k) {
+    const auto known = (noise.variance.row(k).array() >= 0.0).eval();
+    const double mean =
+        known.any() ? known.select(noise.variance.row(k).array(), 0.0).sum() / static_cast<double>(known.count()) : 1.0;
+    noise.variance.row(k) = known.select(noise.variance.row(k).array(), mean);
+  }
+  return noise;
+}
+
+std::vector<double> own_densities(const Signals& signals, int channel, double average_s) {
+  const Blocking blocks(signals.samples(), average_s, signals.dt);
+  const Eigen::MatrixXd y = residuals(signals, channel);
+  std::vector<double> variances;
+  for (Eigen::Index k = 0; k < y.rows(); ++k) {
+    // Half the mean square of the change from block to block: slow offsets fall out (the Allan variance at this time).
+    double squares = 0.0;
+    double count = 0.0;
+    double previous = 0.0;
+    bool have_previous = false;
+    for (std::size_t b = 0; b < blocks.count; ++b) {
+      double sum = 0.0;
+      bool whole = true;
+      for (std::size_t n = blocks.first(b); n < blocks.first(b) + blocks.length; ++n) {
+        sum += y(k, static_cast<Eigen::Index>(n));
+        whole = whole && signals.sensors[static_cast<std::size_t>(k)].may_use(channel, n);
+      }
+      const double mean = sum / static_cast<double>(blocks.length);
+      if (whole && have_previous) {
+        squares += (mean - previous) * (mean - previous);
+        count += 1.0;
+      }
+      previous = mean;
+      have_previous = whole;
+    }
+    variances.push_back(count > 0.0 ? 0.5 * squares / count : 0.0);
+  }
+  std::vector<double> densities = own_variances(variances);
+  for (double& density : densities) density *= static_cast<double>(blocks.length) * signals.dt;
+  return densities;
+}
+
+}  // namespace coast::array

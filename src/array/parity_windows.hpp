@@ -1,0 +1,114 @@
+#pragma once
+// The residuals of one channel and their tests over windows of blocks. Private to the room.
+
+#include <array>
+#include <utility>
+#include <vector>
+
+#include "parity_noise.hpp"
+#include "parity_thresholds.hpp"
+
+namespace coast::array {
+
+/// Which test, and how far: `excess` is the statistic over its threshold, both as standard deviations.
+struct TestValue {
+  enum class Kind : std::uint8_t { kNone, kLevel, kNoise, kMotion };
+  Kind kind = Kind::kNone;
+  std::size_t window = 0;  ///< index in the windows of its kind
+  double excess = 0.0;
+  double statistic = 0.0;
+  double ratio = 1.0;  ///< kNoise: mean square over the usual one
+};
+
+/// Statistics of one channel's K sensors at a block, against sets of sensors that are in order.
+class ChannelWindows {
+ public:
+  using Set = std::vector<bool>;
+
+  /// @param share_per_hour  false alarms of each test
+  ChannelWindows(const Signals& signals, const ParityBlocks& blocks, const ChannelNoise& noise, int channel,
+                 double share_per_hour);
+
+  /// Residuals of block b of all sensors against those of the set that are there. Again for the same b with a smaller set.
+  void enter(std::size_t b, const Set& set);
+  /// Largest test of a sensor in the set at the block entered last; windows begin at `from[k]` or later.
+  [[nodiscard]] TestValue largest(std::size_t k, const Set& set, const std::vector<std::size_t>& from) const;
+  /// Largest test of a sensor on trial since block `since` against the mean of its own residual since then.
+  [[nodiscard]] TestValue largest_on_trial(std::size_t k, std::size_t since) const;
+  /// The past takes in the block that has left each window, of sensors in the set since `in_order_from`.
+  void absorb(std::size_t b, const Set& set, const std::vector<std::size_t>& in_order_from);
+  /// New level from the residuals of blocks [since, b].
+  void take_back(std::size_t k, std::size_t since, std::size_t b);
+  /// Level of k at one window moved by its residual at this block.
+  void follow(std::size_t k, std::size_t window, const Set& set, const std::vector<std::size_t>& from);
+  /// The levels of k at all windows moved to where one window sees it.
+  void move_to(std::size_t k, std::size_t window, const Set& set, const std::vector<std::size_t>& from);
+
+  /// Squares at block b for the inflation's fit; windows that do not overlap.
+  void learn(std::size_t b, const Set& set, const std::vector<std::size_t>& from);
+  void fit_inflations();
+
+  /// Residual of sensor k at block i, and its variance; absent blocks have variance 0.
+  [[nodiscard]] double residual(std::size_t k, std::size_t i) const { return residual_(at(k), at(i)); }
+  [[nodiscard]] double residual_variance(std::size_t k, std::size_t i) const { return variance_(at(k), at(i)); }
+  /// Mean square of the samples of block i over the usual one; 0 where absent.
+  [[nodiscard]] double roughness_ratio(std::size_t k, std::size_t i) const { return ratio_(at(k), at(i)); }
+  /// Mean residual since a block, against the past, in standard deviations.
+  [[nodiscard]] double shift_of_level(std::size_t k, std::size_t since) const;
+  /// Mean square of the samples since a block over the usual one.
+  [[nodiscard]] double noise_since(std::size_t k, std::size_t since) const {
+    return ratio_.row(at(k)).segment(at(since), at(b_ + 1 - since)).mean();
+  }
+  /// Of the motion, mean over blocks [first, last].
+  [[nodiscard]] double power(std::size_t first, std::size_t last) const {
+    return (power_(at(last + 1)) - power_(at(first))) / static_cast<double>(last + 1 - first);
+  }
+  [[nodiscard]] double dof(std::size_t k) const { return noise_.block_dof(k); }
+  [[nodiscard]] bool has(std::size_t k, std::size_t b) const { return blocks_.has(k, channel_, b); }
+  [[nodiscard]] std::size_t sensors() const { return sensors_; }
+
+ private:
+  struct LevelResidual {
+    bool valid = false;
+    double value = 0.0;
+    double variance = 0.0;
+  };
+  static Eigen::Index at(std::size_t i) { return static_cast<Eigen::Index>(i); }
+  void start_levels();
+  void motion_sums();
+  void residual_of_block(std::size_t k, const Set& set, const Eigen::MatrixXd& own, bool again);
+  void set_thresholds(double share_per_hour);
+  [[nodiscard]] double mean_power(std::size_t window) const { return power(b_ + 1 - window, b_); }
+  [[nodiscard]] double mean_roughness(std::size_t window) const;
+  [[nodiscard]] bool all_there(std::size_t k, std::size_t window) const { return run_[k] >= window; }
+  [[nodiscard]] LevelResidual level_residual(std::size_t k, std::size_t window, const Set& set,
+                                             const std::vector<std::size_t>& from) const;
+  [[nodiscard]] double level_variance(std::size_t k, std::size_t window) const;
+  [[nodiscard]] double noise_ratio(std::size_t k, std::size_t blocks, std::size_t since) const;
+  [[nodiscard]] double motion_chi2(std::size_t k, std::size_t blocks, std::size_t since) const;
+  void keep_noise_and_motion(std::size_t k, std::size_t since, TestValue& best) const;
+
+  const Signals& signals_;
+  const ParityBlocks& blocks_;
+  const ChannelNoise& noise_;
+  int channel_;
+  std::size_t sensors_;
+  std::size_t b_ = 0;
+  std::size_t entered_ = 0;                      ///< blocks
+  Eigen::MatrixXd sum_;                          ///< sensor x (blocks + 1): running sums of means
+  Eigen::MatrixXd residual_, variance_, ratio_;  ///< sensor x block
+  std::vector<std::size_t> run_, valid_run_;     ///< blocks in a row up to now that are whole, that have a residual
+  std::array<std::vector<double>, 3> level_, level_uncertainty_;  ///< of the past, by window and sensor
+  Eigen::MatrixXd motion_;                              ///< 9 x (blocks + 1): running sums of x and the upper part of x x'
+  std::vector<Eigen::Matrix4Xd> cross_;                 ///< [sensor] 4 x (blocks + 1): running sums of residual, x residual
+  Eigen::VectorXd power_, roughness_;                   ///< running sums
+  std::array<double, 3> level_threshold_{};             ///< squared
+  std::array<std::vector<double>, 2> noise_threshold_;  ///< by sensor, of the ratio
+  std::array<double, 2> motion_threshold_{};
+  std::vector<std::array<MotionInflation, 3>> level_inflation_;
+  std::vector<std::array<MotionInflation, 2>> noise_inflation_, motion_inflation_;
+  std::vector<std::array<std::vector<RatioAtPower>, 3>> level_ratios_;
+  std::vector<std::array<std::vector<RatioAtPower>, 2>> noise_ratios_, motion_ratios_;
+};
+
+}  // namespace coast::array

@@ -1,0 +1,13 @@
+#pragma once
+// What arguments of the ARMA-GARCH functions have to be. Private to the room.
+
+#include "coast/noise/arma_garch.hpp"
+
+namespace coast::noise {
+
+/// @throws std::invalid_argument  naming what is wrong
+void check_arma_garch(const ArmaGarchOrders& orders);
+void check_arma_garch(const ArmaGarch& model);
+void check_arma_garch(const ArmaGarchSeries& series, const ArmaGarchOrders& orders);
+
+}  // namespace coast::noise
