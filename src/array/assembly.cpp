@@ -14,7 +14,7 @@ namespace coast::array {
 
 namespace {
 
-constexpr double kShortest = 20.0;  // s in common, that tests of defects need
+constexpr double kShortestInCommon = 20.0;  // s in common, that tests of defects need
 
 /// The time that all recordings have in common.
 Grid common_grid(const std::vector<ArrayMember>& members, double rate_hz) {
@@ -29,9 +29,9 @@ Grid common_grid(const std::vector<ArrayMember>& members, double rate_hz) {
     end = std::min(end, samples.back().t);
   }
   const double seconds = end - grid.start;
-  if (seconds < kShortest)
+  if (seconds < kShortestInCommon)
     throw std::invalid_argument(
-        fmt::format("the recordings have {:.1f} s in common, at least {:.0f} s are needed", std::max(seconds, 0.0), kShortest));
+        fmt::format("the recordings have {:.1f} s in common, at least {:.0f} s are needed", std::max(seconds, 0.0), kShortestInCommon));
   grid.samples = static_cast<std::size_t>(std::floor(seconds / grid.dt + 1e-6));
   return grid;
 }

@@ -17,7 +17,7 @@ constexpr std::size_t kFewestOfClock = 60;
 constexpr std::size_t kFewestInBlock = 20;
 
 double delay_quantile(std::vector<double>& values, double quantile) {
-  const auto at = static_cast<std::size_t>(quantile * static_cast<double>(values.size() - 1) + 0.5);
+  const auto at = static_cast<std::size_t>(std::lround(quantile * static_cast<double>(values.size() - 1)));
   std::nth_element(values.begin(), values.begin() + static_cast<std::ptrdiff_t>(at), values.end());
   return values[at];
 }

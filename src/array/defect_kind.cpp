@@ -8,7 +8,7 @@ namespace coast::array {
 
 namespace {
 
-struct Columns {
+struct KindSpan {
   std::size_t from, to;
 };
 
@@ -35,7 +35,7 @@ class KindTest {
            const std::vector<Channels>& noise, std::size_t sensor)
       : signals_(signals), present_(present), blocks_(blocks), noise_(noise), sensor_(sensor) {}
 
-  [[nodiscard]] KindScores of(int channel, Columns span) const;
+  [[nodiscard]] KindScores of(int channel, KindSpan span) const;
 
  private:
   struct Data {
@@ -46,7 +46,7 @@ class KindTest {
   };
   [[nodiscard]] bool others_at(int channel, std::size_t n, double& value) const;
   [[nodiscard]] double bias_before(int channel, std::size_t from) const;
-  [[nodiscard]] Data data(int channel, Columns span) const;
+  [[nodiscard]] Data data(int channel, KindSpan span) const;
   [[nodiscard]] double variance_within_blocks(const Data& data) const;
 
   const Signals& signals_;
@@ -78,7 +78,7 @@ double KindTest::bias_before(int channel, std::size_t from) const {
   return count >= second ? sum / static_cast<double>(count) : blocks_.bias[sensor_](channel);
 }
 
-KindTest::Data KindTest::data(int channel, Columns span) const {
+KindTest::Data KindTest::data(int channel, KindSpan span) const {
   Data data;
   const double bias = data.bias = bias_before(channel, span.from);
   const int group = channel / 3 * 3;
@@ -113,7 +113,7 @@ double KindTest::variance_within_blocks(const Data& data) const {
   return dof > 0.0 ? squares / dof : 0.0;
 }
 
-KindScores KindTest::of(int channel, Columns span) const {
+KindScores KindTest::of(int channel, KindSpan span) const {
   const Data data = this->data(channel, span);
   KindScores scores;
   scores.samples = static_cast<double>(data.residual.size());

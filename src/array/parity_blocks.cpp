@@ -11,7 +11,7 @@ namespace {
 
 using Regressors = Eigen::Matrix<double, 4, 1>;
 
-void block_means(const Signals& signals, const std::vector<std::vector<std::uint8_t>>& present, ParityBlocks& blocks) {
+void parity_means(const Signals& signals, const std::vector<std::vector<std::uint8_t>>& present, ParityBlocks& blocks) {
   for (std::size_t k = 0; k < signals.sensors.size(); ++k) {
     const SensorSignals& sensor = signals.sensors[k];
     auto& mean = blocks.means.emplace_back(Eigen::MatrixXd::Zero(kChannels, static_cast<Eigen::Index>(blocks.count)));
@@ -172,7 +172,7 @@ ParityBlocks make_blocks(const Signals& signals, const std::vector<std::vector<s
   blocks.count = signals.samples() / blocks.length;
   blocks.seconds = static_cast<double>(blocks.length) * signals.dt;
   blocks.bias.assign(signals.sensors.size(), Channels::Zero());
-  block_means(signals, present, blocks);
+  parity_means(signals, present, blocks);
   // Medians of sensors whose biases are in them jump from one to another: the second round has the biases.
   for (int round = 0; round < 2; ++round) {
     common_of_blocks(blocks);

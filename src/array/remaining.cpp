@@ -2,11 +2,13 @@
 
 #include <fmt/format.h>
 
+#include <array>
 #include <cmath>
 #include <stdexcept>
 
 #include "coast/array/channel.hpp"
 #include "coast/noise/estimators.hpp"
+#include "coast/noise/gauss_markov.hpp"
 
 namespace coast::array {
 
@@ -99,10 +101,27 @@ RemainingErrors remaining_errors(const Signals& signals, int channel, double ave
   RemainingErrors remaining;
   const noise::Sensor sensor = channel < 3 ? noise::Sensor::kGyro : noise::Sensor::kAccel;
   remaining.processes = best.model.processes(of_the_mean(best, sensors, white_factor), {sensor, records.front().interval});
-  remaining.level_sd = level_sd_of_mean(records);
+  if (const double sd = level_sd_of_mean(records); sd > 0.0)
+    remaining.processes.push_back(
+        noise::make_gauss_markov({.name = "random_constant", .sigma = sd, .unit = channel < 3 ? "rad/s" : "m/s^2"}));
   remaining.in_words = fmt::format("{}, 2 log-likelihood {:.1f} above white noise alone; {} sensors", best.model.name(),
                                    2.0 * (both.fit.log_likelihood - white.fit.log_likelihood), records.size());
   return remaining;
+}
+
+noise::ProcessPtr white_noise_of(double density, int channel) {
+  const noise::Sensor sensor = channel < 3 ? noise::Sensor::kGyro : noise::Sensor::kAccel;
+  return noise::estimable("white_noise").process(std::array{std::log(density)}, {sensor, 1.0});
+}
+
+noise::ImuErrorModel error_model_of(const std::string& name, double rate_hz, const std::vector<RemainingErrors>& channels) {
+  noise::ImuErrorModel::Axes gyro;
+  noise::ImuErrorModel::Axes accel;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    gyro[axis] = channels.at(axis).processes;
+    accel[axis] = channels.at(axis + 3).processes;
+  }
+  return noise::ImuErrorModel::of(name, rate_hz, std::move(gyro), std::move(accel));
 }
 
 std::string error_model_yaml(const std::string& name, double rate_hz, const std::vector<RemainingErrors>& channels) {
@@ -112,10 +131,6 @@ std::string error_model_yaml(const std::string& name, double rate_hz, const std:
     const RemainingErrors& errors = channels.at(static_cast<std::size_t>(c));
     text += fmt::format("  {}:\n    # {}\n", "xyz"[c % 3], errors.in_words);
     for (const noise::ProcessPtr& process : errors.processes) text += fmt::format("    - {}\n", process->yaml());
-    if (errors.level_sd > 0.0)
-      text += fmt::format(
-          "    # from how the sensors' levels scatter\n    - {{process: random_constant, sigma: {:.17g}, unit: {}}}\n",
-          errors.level_sd, c < 3 ? "rad/s" : "m/s^2");
   }
   return text;
 }

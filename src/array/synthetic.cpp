@@ -195,4 +195,10 @@ MergedChannel merge_channel(const Signals& signals, int channel, const MergeOpti
   return merged;
 }
 
+double white_share(const MergedChannel& merged) {
+  const auto K = static_cast<double>(merged.noise.variance.rows());
+  const double plain = merged.noise.variance.colwise().sum().mean() / (K * K);
+  return plain > 0.0 ? merged.variance.mean() / plain : 1.0;
+}
+
 }  // namespace coast::array

@@ -39,6 +39,13 @@ void ppk(const std::filesystem::path& input, const CommonOptions& options);
 [[nodiscard]] std::string ppk_example(const std::string& indent);
 /// `coast synth array.yaml`: several IMUs -> imu.csv, noise.csv, error_model.yaml, synth.json, report.html.
 void synth(const std::filesystem::path& array_yaml, const CommonOptions& options);
+/// `coast synth study.yaml` with schema coast.array_study/1: simulated arrays with known truth -> array_study.json,
+/// report.html.
+void array_study(const std::filesystem::path& study_yaml, const CommonOptions& options);
+/// Whether this file is such a study, by its schema key.
+[[nodiscard]] bool is_array_study(const std::filesystem::path& file);
+/// The study.yaml of the help page, every line behind `indent`.
+[[nodiscard]] std::string array_study_example(const std::string& indent);
 /// The array.yaml of the help page, every line behind `indent`.
 [[nodiscard]] std::string array_example(const std::string& indent);
 /// `coast compare a.nav b.nav`: differences a - b in N, E, D and attitude.

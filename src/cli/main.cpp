@@ -44,6 +44,21 @@ void add_calibrate(CLI::App& app, std::filesystem::path& input, CommonOptions& c
   });
 }
 
+void add_synth(CLI::App& app, std::filesystem::path& input, CommonOptions& common) {
+  auto* synth = subcommand(app, "synth", "several IMUs -> one synthetic IMU: mean, weighted, garch or corrected", "", common);
+  synth->add_option("array", input, "array.yaml, or study.yaml")->required();
+  synth->footer(fmt::format(
+      "Example:\n  coast synth array.yaml --out synthetic\n\narray.yaml:\n{}\n\nstudy.yaml, simulated arrays with known "
+      "truth:\n{}",
+      coast::cli::array_example("  "), coast::cli::array_study_example("  ")));
+  synth->callback([&input, &common] {
+    if (coast::cli::is_array_study(input))
+      coast::cli::array_study(input, common);
+    else
+      coast::cli::synth(input, common);
+  });
+}
+
 int run(int argc, char** argv) {
   CLI::App app{"coast: post-mission INS/GNSS trajectories"};
   app.set_version_flag("--version", COAST_VERSION);
@@ -80,11 +95,7 @@ int run(int argc, char** argv) {
   ppk->footer(fmt::format("Example:\n  coast ppk ppk.yaml --out positions\n\nppk.yaml:\n{}", coast::cli::ppk_example("  ")));
   ppk->callback([&] { coast::cli::ppk(input, common); });
 
-  auto* synth = subcommand(app, "synth", "several IMUs -> one synthetic IMU: mean, weighted, garch or corrected", "", common);
-  synth->add_option("array", input, "array.yaml")->required();
-  synth->footer(
-      fmt::format("Example:\n  coast synth array.yaml --out synthetic\n\narray.yaml:\n{}", coast::cli::array_example("  ")));
-  synth->callback([&] { coast::cli::synth(input, common); });
+  add_synth(app, input, common);
 
   auto* compare = subcommand(app, "compare", "two trajectories: N, E, D and attitude differences, first minus second",
                              "coast compare results/trajectory.nav truth.nav", common);

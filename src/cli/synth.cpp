@@ -81,12 +81,6 @@ ChannelErrors errors_against(const Eigen::RowVectorXd& truth, const array::Signa
   return errors;
 }
 
-/// The white part of what was merged as a share of the plain mean's.
-double white_share(const array::MergedChannel& channel) {
-  const double plain = plain_sd(channel);
-  return plain > 0.0 ? std::pow(merged_sd(channel) / plain, 2) : 1.0;
-}
-
 void merge_all(const ArrayConfig& config, SynthResult& result, ProgressLine& line) {
   constexpr double kAverage = 1.0;  // s: slow errors are told from means over this
   const array::Assembly& assembly = result.assembly;
@@ -102,7 +96,7 @@ void merge_all(const ArrayConfig& config, SynthResult& result, ProgressLine& lin
     if (reference) truth = reference->values.row(c).transpose();
     result.channels[at] = array::merge_channel(assembly.levelled, c, config.merge, truth);
     if (reference) result.against_reference[at] = errors_against(truth->transpose(), assembly.levelled, c, result.channels[at]);
-    result.remaining[at] = array::remaining_errors(assembly.signals, c, kAverage, white_share(result.channels[at]));
+    result.remaining[at] = array::remaining_errors(assembly.signals, c, kAverage, array::white_share(result.channels[at]));
     const std::scoped_lock lock(mutex);
     done += 1.0 / array::kChannels;
     line.show("merging", done);

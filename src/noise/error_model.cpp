@@ -55,6 +55,15 @@ ImuErrorModel ImuErrorModel::from(const config::Node& file) {
   return model;
 }
 
+ImuErrorModel ImuErrorModel::of(std::string sensor_name, double rate_hz, Axes gyro, Axes accel) {
+  ImuErrorModel model;
+  model.sensor_name_ = std::move(sensor_name);
+  model.rate_hz_ = rate_hz;
+  model.gyro_ = std::move(gyro);
+  model.accel_ = std::move(accel);
+  return model;
+}
+
 namespace {
 
 double white_for_filter(const Process& process) {

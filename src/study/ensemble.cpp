@@ -11,7 +11,7 @@
 
 #include "coast/ins/mounting.hpp"
 #include "coast/record/error.hpp"
-#include "coast/study/mission.hpp"
+#include "seed_outage.hpp"
 
 namespace coast::study {
 
@@ -34,15 +34,6 @@ std::vector<ElapsedOutage> elapsed_outages(const EnsemblePlan& plan, const simul
   return outages;
 }
 
-Setup setup_of(const simulate::Scenario& scenario, const noise::ImuErrorModel& model) {
-  Setup setup;
-  setup.C_s_b = ins::C_s_b(scenario.mounting);
-  setup.lever_arm_b = scenario.gnss.lever_arm_b;
-  setup.time_offset_s = scenario.gnss.time_offset;
-  setup.model = model;
-  return setup;
-}
-
 /// What every recording of the ensemble shares.
 struct Shared {
   const EnsemblePlan& plan;
@@ -58,28 +49,6 @@ struct Shared {
   }
 };
 
-// The outage's fixes are withheld from the first step on: neither the refined start nor anything else has seen them.
-OutageResult process(const Shared& shared, simulate::ErrorFreeMission::Recordings recordings, const noise::ImuErrorModel& model,
-                     const Outage& outage) {
-  Setup setup = setup_of(shared.plan.scenario, model);
-  setup.filter.withheld.push_back(outage.span());
-  const geo::GpsTime end = outage.span().to + kTail;
-  std::erase_if(recordings.imu.samples, [&](const record::ImuSample& s) { return s.t > end; });
-  std::erase_if(recordings.gnss.fixes, [&](const record::GnssFix& f) { return f.t > end; });
-  const PreparedMission mission(std::move(recordings.imu), std::move(recordings.gnss), std::move(setup), {});
-  const geo::GpsTime scenario_start = shared.plan.scenario.start;
-  if (outage.start < mission.start().nav.t)
-    throw InputError({"", 0, fmt::format("an outage {:.3f} s after the start of the scenario", outage.start - scenario_start),
-                      fmt::format("one after the alignment, from {:.3f} s on", mission.start().nav.t - scenario_start), ""});
-  OutageRecorder forward(outage, shared.mission.truth(), Eigen::Vector3d::Zero(), mission.mission());
-  OutageRecorder smoothed(outage, shared.mission.truth(), Eigen::Vector3d::Zero(), mission.mission());
-  SolutionOutputs outputs;
-  outputs.forward = [&](const record::TrajectoryEpoch& epoch) { forward.add(epoch); };
-  outputs.smoothed = [&](const record::TrajectoryEpoch& epoch) { smoothed.add(epoch); };
-  static_cast<void>(solve(mission, mission.options(), true, outputs, {}));
-  return {outage, forward.errors(), smoothed.errors()};
-}
-
 // One seed of one case: simulated once, processed with every filter. [filter][outage]
 std::vector<std::vector<OutageResult>> run_seed(const Shared& shared, const EnsembleCase& which, std::uint64_t seed) {
   try {
@@ -88,7 +57,8 @@ std::vector<std::vector<OutageResult>> run_seed(const Shared& shared, const Ense
     std::vector<std::vector<OutageResult>> results;
     for (const NamedModel& filter : which.filters) {
       results.emplace_back();
-      for (const Outage& outage : shared.outages) results.back().push_back(process(shared, recordings, filter.model, outage));
+      for (const Outage& outage : shared.outages)
+        results.back().push_back(solve_outage(shared.plan.scenario, shared.mission.truth(), recordings, filter.model, outage));
     }
     return results;
   } catch (const NumericalError& error) {

@@ -97,21 +97,21 @@ TEST(EstimatorStudyCommand, WritesWhatItsSchemaSays) {
 TEST(EstimatorStudyCommand, NamesLineOfWhatIsWrong) {
   const test::TemporaryDirectory folder;
   const fs::path log = folder.path() / "stderr.txt";
-  struct Spoiled {
+  struct SpoiledEstimatorStudy {
     const char* from;
     const char* to;
     int line;
   };
-  for (const Spoiled& s : {Spoiled{"samples: 400", "samples: 40", 8},
-                           {"runs: 3", "rums: 3", 1},
-                           {"density: 0.09", "density: -1", 5},
-                           {"beta: 0.05,", "", 5},
-                           {"kind: em", "kind: emm", 13},
-                           {"estimator: EM", "estimator: ME", 18},
-                           {"  - {kind: wavelet_moments", "  - {kind: wavelet_moments, name: EM", 16},
-                           {"sum: [white_noise]}", "sum: [pink_noise]}", 17},
-                           {"interval_s: 1", "interval_s: 0", 7},
-                           {"title: a", "titel: a", 2}}) {
+  for (const SpoiledEstimatorStudy& s : {SpoiledEstimatorStudy{"samples: 400", "samples: 40", 8},
+                                         {"runs: 3", "rums: 3", 1},
+                                         {"density: 0.09", "density: -1", 5},
+                                         {"beta: 0.05,", "", 5},
+                                         {"kind: em", "kind: emm", 13},
+                                         {"estimator: EM", "estimator: ME", 18},
+                                         {"  - {kind: wavelet_moments", "  - {kind: wavelet_moments, name: EM", 16},
+                                         {"sum: [white_noise]}", "sum: [pink_noise]}", 17},
+                                         {"interval_s: 1", "interval_s: 0", 7},
+                                         {"title: a", "titel: a", 2}}) {
     const fs::path study = written(folder, with(s.from, s.to));
     EXPECT_EQ(status_of(study, folder.path() / "out", log), 2) << s.to;
     EXPECT_NE(text_of(log).find(fmt::format("study.yaml:{}", s.line)), std::string::npos) << s.to << ": " << text_of(log);

@@ -3,7 +3,8 @@
 #include <gtest/gtest.h>
 
 #include "coast/io/yaml.hpp"
-#include "support/support.hpp"
+#include "coast/record/error.hpp"
+#include "io/files.hpp"
 
 namespace coast::io {
 namespace {
@@ -16,9 +17,9 @@ units: {gyro: deg/s, accel: g}
 constexpr const char* kPacketHeader = "n,t,gps,pulse,gx,gy,gz,ax,ay,az\n";
 
 record::PacketRecording packets_of(const std::string& rows) {
-  const test::TemporaryDirectory folder;
+  const test::Files files;
   PacketFileOptions options = PacketFileOptions::from(parse_yaml(kPacketMap, "array.yaml"));
-  options.file = folder.put("log.csv", kPacketHeader + rows);
+  options.file = files.put("log.csv", kPacketHeader + rows);
   return read_packets(options);
 }
 

@@ -2,16 +2,16 @@
 // The error model of the synthetic IMU: what is left after merging, Stebler et al. (2011), section III.E.
 
 #include <string>
+#include <vector>
 
 #include "coast/array/signals.hpp"
-#include "coast/noise/process.hpp"
+#include "coast/noise/error_model.hpp"
 
 namespace coast::array {
 
 /// Errors of the mean of all sensors in one channel, as far as the sensors' differences tell.
 struct RemainingErrors {
-  std::vector<noise::ProcessPtr> processes;  ///< white noise, and a Gauss-Markov process where BIC wants one
-  double level_sd = 0.0;                     ///< standard deviation of a constant, [signal]
+  std::vector<noise::ProcessPtr> processes;  ///< white noise, a Gauss-Markov process where BIC wants one, a constant
   std::string in_words;                      ///< "WN + GM, 2 log-likelihood 31.2 above WN alone; 5 sensors"
 };
 
@@ -26,7 +26,13 @@ struct RemainingErrors {
 /// @throws std::invalid_argument  fewer than 2 sensors, or fewer than 50 averages
 [[nodiscard]] RemainingErrors remaining_errors(const Signals& signals, int channel, double average_s, double white_factor);
 
-/// The file that `process` takes as `imu.error_model`: one entry of each channel's errors.
+/// White noise as a navigation filter takes it.  @param density  [signal]^2/Hz
+[[nodiscard]] noise::ProcessPtr white_noise_of(double density, int channel);
+
+/// The error model of six channels.
+[[nodiscard]] noise::ImuErrorModel error_model_of(const std::string& name, double rate_hz,
+                                                  const std::vector<RemainingErrors>& channels);
+/// The same as the file that `process` takes as `imu.error_model`, with a comment on each channel.
 [[nodiscard]] std::string error_model_yaml(const std::string& name, double rate_hz,
                                            const std::vector<RemainingErrors>& channels);
 

@@ -49,4 +49,7 @@ struct MergedChannel {
 [[nodiscard]] MergedChannel merge_channel(const Signals& signals, int channel, const MergeOptions& options,
                                           const std::optional<Eigen::VectorXd>& reference = {});
 
+/// Variance of what was merged over that of the plain mean, by the measured noise of the sensors; 1 without noise.
+[[nodiscard]] double white_share(const MergedChannel& merged);
+
 }  // namespace coast::array

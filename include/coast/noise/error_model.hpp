@@ -17,6 +17,9 @@ class ImuErrorModel {
   /// @throws InputError  anything that the schema does not allow, with file and line
   [[nodiscard]] static ImuErrorModel from(const config::Node& file);
 
+  /// From processes at hand.
+  [[nodiscard]] static ImuErrorModel of(std::string sensor_name, double rate_hz, Axes gyro, Axes accel);
+
   [[nodiscard]] const Axes& axes(Sensor sensor) const { return sensor == Sensor::kGyro ? gyro_ : accel_; }
   /// White noise of an axis as a filter takes it, [signal]^2/Hz: the white densities, and what may be taken for white.
   [[nodiscard]] geo::Psd white_density(Sensor sensor, int axis) const;
