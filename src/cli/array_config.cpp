@@ -157,7 +157,7 @@ void read_merge(const Node& root, ArrayConfig& config) {
 
 }  // namespace
 
-std::string_view name_of(array::Merge merge) {
+std::string_view merge_name(array::Merge merge) {
   return kMerges[static_cast<std::size_t>(merge)];
 }
 

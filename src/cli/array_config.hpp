@@ -45,6 +45,6 @@ struct ArrayConfig {
 /// @throws InputError  anything missing, out of range or unknown, with file and line
 [[nodiscard]] ArrayConfig read_array_config(const std::filesystem::path& file);
 
-[[nodiscard]] std::string_view name_of(array::Merge merge);
+[[nodiscard]] std::string_view merge_name(array::Merge merge);
 
 }  // namespace coast::cli

@@ -108,7 +108,7 @@ void write_results(const ArrayConfig& config, const SynthResult& result, const s
   io::write_imu_csv(out / "imu.csv", synthetic_imu(result));
   io::write_text(out / "noise.csv", noise_csv(result));
   io::write_text(out / "error_model.yaml", array::error_model_yaml(fmt::format("synthetic IMU of {}, {}", config.imus.size(),
-                                                                               name_of(config.merge.merge)),
+                                                                               merge_name(config.merge.merge)),
                                                                    1.0 / result.assembly.signals.dt, result.remaining));
   io::write_text(out / "synth.json", synth_json(config, result));
   io::write_text(out / "array.resolved.yaml", config.root.resolved_yaml());

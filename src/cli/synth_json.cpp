@@ -118,7 +118,7 @@ Json disagreement_json(const ArrayConfig& config, const SynthResult& result, con
 
 Json merge_json(const ArrayConfig& config) {
   const noise::ArmaGarchOrders& orders = config.merge.orders;
-  Json j = {{"method", name_of(config.merge.merge)}};
+  Json j = {{"method", merge_name(config.merge.merge)}};
   if (config.merge.merge == array::Merge::kGarch || config.merge.merge == array::Merge::kCorrected) {
     if (config.merge.choose_orders)
       j["orders"] = "auto";

@@ -69,7 +69,7 @@ report::Tile defect_tile(const SynthResult& result) {
 report::Page synth_page(const ArrayConfig& config, const SynthResult& result) {
   report::Page page;
   page.title = fmt::format("Synthetic IMU of {}", result.sources.size());
-  page.subtitle = fmt::format("{}: {}", config.file.filename().string(), name_of(config.merge.merge));
+  page.subtitle = fmt::format("{}: {}", config.file.filename().string(), merge_name(config.merge.merge));
   page.start = result.assembly.signals.start;
   page.tiles = {gain_tile(result, 0, "Gyro noise"), gain_tile(result, 3, "Accelerometer noise"), lag_tile(result),
                 defect_tile(result)};

@@ -92,7 +92,7 @@ std::vector<std::string> synth_sentences(const ArrayConfig& config, const SynthR
   std::vector<std::string> text;
   text.push_back(fmt::format("{} IMUs, {:.1f} s in common, on a grid of {:.4g} Hz; merged: {}.", config.imus.size(),
                              static_cast<double>(assembly.signals.samples()) * assembly.signals.dt, 1.0 / assembly.signals.dt,
-                             name_of(config.merge.merge)));
+                             merge_name(config.merge.merge)));
   for (std::size_t k = 0; k < assembly.lags.size(); ++k)
     if (assembly.lags[k])
       text.push_back(fmt::format("{}: {:+.2f} +- {:.2f} ms and {:+.1f} ppm against {}.", config.imus[k].name,

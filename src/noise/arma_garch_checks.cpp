@@ -37,7 +37,7 @@ void check_arma_garch(const ArmaGarchSeries& series, const ArmaGarchOrders& orde
       ++counted;
   }
   const int parameters = 2 + orders.ar + orders.ma + orders.arch + orders.garch;
-  const auto least = static_cast<std::size_t>(20 + 5 * parameters);
+  const std::size_t least = 20 + 5 * static_cast<std::size_t>(parameters);
   if (counted < least)
     throw std::invalid_argument(fmt::format("ARMA-GARCH series: {} samples that count, {} expected", counted, least));
 }

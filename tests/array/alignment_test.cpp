@@ -123,7 +123,7 @@ TEST(Alignment, ErrorsAreAsStatedAndNearTheCramerRaoBound) {
     double squares = 0.0, normalised = 0.0, bound = 0.0;
     const int runs = 150;
     for (int run = 0; run < runs; ++run) {
-      const auto seed = static_cast<std::uint64_t>(10 * run + 1000);
+      const auto seed = 1000 + 10 * static_cast<std::uint64_t>(run);
       const Tones motion(seed, 0.05, 4.0, kMotion);
       const double lag = 0.0033 + 1e-4 * run;
       const LagEstimate found =

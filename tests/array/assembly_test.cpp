@@ -13,7 +13,7 @@
 namespace coast::array {
 namespace {
 
-const geo::GpsTime kStart = geo::GpsTime::from_week(2300, 1000.0);
+const geo::GpsTime kMissionStart = geo::GpsTime::from_week(2300, 1000.0);
 
 /// Three IMUs on a simulated car, free of errors but for what the test adds.
 struct CarArray {
@@ -30,7 +30,7 @@ struct CarArray {
     std::mt19937_64 generator(7);
     std::normal_distribution<double> normal;
     for (const SensorFrame& frame : frames) {
-      recordings.push_back(simulate::true_increments(motion, {kStart, 100.0, {}}, {frame.r_b, frame.C_s_b.transpose()}));
+      recordings.push_back(simulate::true_increments(motion, {kMissionStart, 100.0, {}}, {frame.r_b, frame.C_s_b.transpose()}));
       for (record::ImuSample& sample : recordings.back().samples)
         for (int i = 0; i < 3; ++i) {
           sample.dtheta(i) += rate_sd * normal(generator) * sample.dt;
@@ -40,7 +40,7 @@ struct CarArray {
   }
   void shift_clock(std::size_t k, double offset, double ppm) {
     for (record::ImuSample& sample : recordings[k].samples)
-      sample.t = kStart + (offset + (1.0 + 1e-6 * ppm) * (sample.t - kStart));
+      sample.t = kMissionStart + (offset + (1.0 + 1e-6 * ppm) * (sample.t - kMissionStart));
   }
   [[nodiscard]] std::vector<ArrayMember> members() const {
     std::vector<ArrayMember> list;

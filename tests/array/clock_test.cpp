@@ -180,10 +180,10 @@ TEST(Clock, PulsesGiveTheTimeOfEverySampleBetweenThem) {
 TEST(Clock, LostAndMisplacedPulsesDoNotMatter) {
   PacketSegment segment = pulsed(20.0);
   const PulseTrain train{.first_s = 1000.0, .period_s = 1.0 + 20e-6};
-  for (const int second : {3, 77, 78, 79, 300}) segment.packets[static_cast<std::size_t>(100 * second)].pulse.reset();
-  for (const int second : {0, 150, 599}) {  // one sample late
-    segment.packets[static_cast<std::size_t>(100 * second)].pulse.reset();
-    segment.packets[static_cast<std::size_t>(100 * second + 1)].pulse = second;
+  for (const std::size_t second : {3U, 77U, 78U, 79U, 300U}) segment.packets[100 * second].pulse.reset();
+  for (const std::size_t second : {0U, 150U, 599U}) {  // one sample late
+    segment.packets[100 * second].pulse.reset();
+    segment.packets[100 * second + 1].pulse = static_cast<std::int64_t>(second);
   }
   const ClockFit fit = pulse_clock(segment, kInterval, train);
   EXPECT_EQ(fit.rejected, 3u);
