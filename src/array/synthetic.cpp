@@ -197,8 +197,9 @@ MergedChannel merge_channel(const Signals& signals, int channel, const MergeOpti
 
 double white_share(const MergedChannel& merged) {
   const auto K = static_cast<double>(merged.noise.variance.rows());
-  const double plain = merged.noise.variance.colwise().sum().mean() / (K * K);
-  return plain > 0.0 ? merged.variance.mean() / plain : 1.0;
+  const Eigen::VectorXd own = merged.noise.variance.rowwise().mean();
+  const double plain = own.sum() / (K * K);
+  return plain > 0.0 ? merged.weight.cwiseAbs2().dot(own) / plain : 1.0;
 }
 
 }  // namespace coast::array

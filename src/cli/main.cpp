@@ -59,6 +59,18 @@ void add_synth(CLI::App& app, std::filesystem::path& input, CommonOptions& commo
   });
 }
 
+void add_compare(CLI::App& app, std::filesystem::path& first, std::filesystem::path& second, std::vector<double>& lever_arm,
+                 CommonOptions& common) {
+  auto* compare = subcommand(app, "compare", "two trajectories: N, E, D and attitude differences, first minus second",
+                             "coast compare results/trajectory.nav truth.nav", common);
+  compare->add_option("first", first, ".nav, CSV or SBET")->required();
+  compare->add_option("second", second, ".nav, CSV or SBET: the differences are taken at its epochs")->required();
+  compare->add_option("--lever-arm", lever_arm, "from the first's point to the second's, forward right down, m")->expected(3);
+  compare->callback([&first, &second, &lever_arm, &common] {
+    coast::cli::compare(first, second, Eigen::Vector3d(lever_arm[0], lever_arm[1], lever_arm[2]), common);
+  });
+}
+
 int run(int argc, char** argv) {
   CLI::App app{"coast: post-mission INS/GNSS trajectories"};
   app.set_version_flag("--version", COAST_VERSION);
@@ -97,13 +109,7 @@ int run(int argc, char** argv) {
 
   add_synth(app, input, common);
 
-  auto* compare = subcommand(app, "compare", "two trajectories: N, E, D and attitude differences, first minus second",
-                             "coast compare results/trajectory.nav truth.nav", common);
-  compare->add_option("first", input, ".nav, CSV or SBET")->required();
-  compare->add_option("second", other, ".nav, CSV or SBET: the differences are taken at its epochs")->required();
-  compare->add_option("--lever-arm", lever_arm, "from the first's point to the second's, forward right down, m")->expected(3);
-  compare->callback(
-      [&] { coast::cli::compare(input, other, Eigen::Vector3d(lever_arm[0], lever_arm[1], lever_arm[2]), common); });
+  add_compare(app, input, other, lever_arm, common);
 
   auto* report = subcommand(app, "report", "the HTML page again from stored results", "coast report results", common);
   report->add_option("folder", input, "folder of a run")->required();

@@ -111,6 +111,21 @@ TEST(Merge, CorrectedByResidualsIsBetterThanTheMeanAndWorseThanByErrors) {
   EXPECT_LT(by_errors, by_residuals);
 }
 
+TEST(Merge, ShareOfDensityIsThatOfSlowMeans) {
+  const Signals signals = arma_garch_array(13);
+  // Means over a second see the density at frequency zero. 300 of them know a variance to 8 %, of both merges alike.
+  const auto slow = [](const Eigen::VectorXd& x) {
+    const Eigen::Index blocks = x.size() / 100;
+    return mean_square(x.head(100 * blocks).reshaped(100, blocks).colwise().mean().transpose());
+  };
+  const MergedChannel mean = merge_channel(signals, 0, {.merge = Merge::kMean});
+  EXPECT_DOUBLE_EQ(white_share(mean), 1.0);
+  for (const Merge merge : {Merge::kWeighted, Merge::kGarch}) {
+    const MergedChannel merged = merge_channel(signals, 0, {.merge = merge, .orders = {1, 0, 1, 1}});
+    EXPECT_NEAR(white_share(merged) / (slow(merged.value) / slow(mean.value)), 1.0, 0.25);
+  }
+}
+
 TEST(Merge, WithoutNoiseIsTheMotion) {
   Signals signals = noisy_array({0.0, 0.0, 0.0}, 2000, 5);
   for (SensorSignals& sensor : signals.sensors) sensor.values.row(3).setLinSpaced(0.0, 1.0);

@@ -49,7 +49,8 @@ struct MergedChannel {
 [[nodiscard]] MergedChannel merge_channel(const Signals& signals, int channel, const MergeOptions& options,
                                           const std::optional<Eigen::VectorXd>& reference = {});
 
-/// Variance of what was merged over that of the plain mean, by the measured noise of the sensors; 1 without noise.
+/// Density of what was merged over that of the plain mean, by the mean weights and the measured noise of the sensors; 1 without
+/// noise. A GARCH model's variance is that of a sample given the past, which is no density where samples are correlated.
 [[nodiscard]] double white_share(const MergedChannel& merged);
 
 }  // namespace coast::array
