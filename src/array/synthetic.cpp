@@ -197,9 +197,10 @@ MergedChannel merge_channel(const Signals& signals, int channel, const MergeOpti
 
 double white_share(const MergedChannel& merged) {
   const auto K = static_cast<double>(merged.noise.variance.rows());
-  const Eigen::VectorXd own = merged.noise.variance.rowwise().mean();
-  const double plain = own.sum() / (K * K);
-  return plain > 0.0 ? merged.weight.cwiseAbs2().dot(own) / plain : 1.0;
+  const double measured = merged.noise.variance.mean();
+  const double plain = measured / K;
+  const double whole = merged.predicted.size() > 0 ? measured / merged.predicted.mean() : 1.0;
+  return plain > 0.0 ? whole * merged.variance.mean() / plain : 1.0;
 }
 
 }  // namespace coast::array

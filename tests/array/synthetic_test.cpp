@@ -119,7 +119,7 @@ TEST(Merge, ShareOfDensityIsThatOfSlowMeans) {
     return mean_square(x.head(100 * blocks).reshaped(100, blocks).colwise().mean().transpose());
   };
   const MergedChannel mean = merge_channel(signals, 0, {.merge = Merge::kMean});
-  EXPECT_DOUBLE_EQ(white_share(mean), 1.0);
+  EXPECT_NEAR(white_share(mean), 1.0, 1e-9);
   for (const Merge merge : {Merge::kWeighted, Merge::kGarch}) {
     const MergedChannel merged = merge_channel(signals, 0, {.merge = merge, .orders = {1, 0, 1, 1}});
     EXPECT_NEAR(white_share(merged) / (slow(merged.value) / slow(mean.value)), 1.0, 0.25);

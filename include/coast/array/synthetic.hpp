@@ -49,8 +49,9 @@ struct MergedChannel {
 [[nodiscard]] MergedChannel merge_channel(const Signals& signals, int channel, const MergeOptions& options,
                                           const std::optional<Eigen::VectorXd>& reference = {});
 
-/// Density of what was merged over that of the plain mean, by the mean weights and the measured noise of the sensors; 1 without
-/// noise. A GARCH model's variance is that of a sample given the past, which is no density where samples are correlated.
+/// Density of what was merged over that of the plain mean, by the variances behind the weights and the measured noise of the
+/// sensors; 1 without noise. A GARCH model's variance is that of a sample given the past: it is raised by what that leaves out
+/// of the measured.
 [[nodiscard]] double white_share(const MergedChannel& merged);
 
 }  // namespace coast::array
