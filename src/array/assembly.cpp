@@ -30,8 +30,8 @@ Grid common_grid(const std::vector<ArrayMember>& members, double rate_hz) {
   }
   const double seconds = end - grid.start;
   if (seconds < kShortestInCommon)
-    throw std::invalid_argument(
-        fmt::format("the recordings have {:.1f} s in common, at least {:.0f} s are needed", std::max(seconds, 0.0), kShortestInCommon));
+    throw std::invalid_argument(fmt::format("the recordings have {:.1f} s in common, at least {:.0f} s are needed",
+                                            std::max(seconds, 0.0), kShortestInCommon));
   grid.samples = static_cast<std::size_t>(std::floor(seconds / grid.dt + 1e-6));
   return grid;
 }
