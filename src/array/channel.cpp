@@ -160,36 +160,4 @@ NoiseOverTime noise_over_time(const Signals& signals, int channel, double window
   return noise;
 }
 
-std::vector<double> own_densities(const Signals& signals, int channel, double average_s) {
-  const Blocking blocks(signals.samples(), average_s, signals.dt);
-  const Eigen::MatrixXd y = residuals(signals, channel);
-  std::vector<double> variances;
-  for (Eigen::Index k = 0; k < y.rows(); ++k) {
-    // Half the mean square of the change from block to block: slow offsets fall out (the Allan variance at this time).
-    double squares = 0.0;
-    double count = 0.0;
-    double previous = 0.0;
-    bool have_previous = false;
-    for (std::size_t b = 0; b < blocks.count; ++b) {
-      double sum = 0.0;
-      bool whole = true;
-      for (std::size_t n = blocks.first(b); n < blocks.first(b) + blocks.length; ++n) {
-        sum += y(k, static_cast<Eigen::Index>(n));
-        whole = whole && signals.sensors[static_cast<std::size_t>(k)].may_use(channel, n);
-      }
-      const double mean = sum / static_cast<double>(blocks.length);
-      if (whole && have_previous) {
-        squares += (mean - previous) * (mean - previous);
-        count += 1.0;
-      }
-      previous = mean;
-      have_previous = whole;
-    }
-    variances.push_back(count > 0.0 ? 0.5 * squares / count : 0.0);
-  }
-  std::vector<double> densities = own_variances(variances);
-  for (double& density : densities) density *= static_cast<double>(blocks.length) * signals.dt;
-  return densities;
-}
-
 }  // namespace coast::array

@@ -94,7 +94,7 @@ Eigen::RowVectorXd merged_errors(const Eigen::MatrixXd& errors, const std::vecto
 }
 
 struct StudiedRun {
-  std::vector<double> mse;  // in the order of names()
+  std::vector<double> mse;  // in the order of merge_names()
   std::vector<ResidualModel> models;
   std::vector<std::vector<double>> errors;
   std::vector<double> sd, predicted_sd;

@@ -128,22 +128,11 @@ void read_defects(const Node& root, ArrayConfig& config) {
 void read_orders(const Node& merge, array::MergeOptions& options) {
   const auto orders = merge.find("orders");
   if (!orders) return;
-  if (orders->is_scalar()) {
+  options.choose_orders = orders->is_scalar();
+  if (options.choose_orders)
     static_cast<void>(orders->choice({"auto"}));
-    options.choose_orders = true;
-    return;
-  }
-  constexpr long kHighest = 9;
-  std::array<int, 4> values{};
-  const std::vector<Node> items = orders->items();
-  if (items.size() != values.size()) throw orders->error(fmt::format("{} numbers", items.size()), "four: d, h, p, q; or auto");
-  for (std::size_t i = 0; i < values.size(); ++i) {
-    const long value = items[i].integer();
-    if (value < 0 || value > kHighest) throw items[i].error(fmt::format("{}", value), "an order from 0 to 9");
-    values[i] = static_cast<int>(value);
-  }
-  if (values[3] > 0 && values[2] == 0) throw orders->error("q without p", "a GARCH(p,q) with p of 1 or more");
-  options.orders = {values[0], values[1], values[2], values[3]};
+  else
+    options.orders = arma_garch_orders(*orders);
 }
 
 void read_merge(const Node& root, ArrayConfig& config) {
@@ -156,6 +145,20 @@ void read_merge(const Node& root, ArrayConfig& config) {
 }
 
 }  // namespace
+
+noise::ArmaGarchOrders arma_garch_orders(const Node& list) {
+  constexpr long kHighest = 9;
+  std::array<int, 4> values{};
+  const std::vector<Node> items = list.items();
+  if (items.size() != values.size()) throw list.error(fmt::format("{} numbers", items.size()), "four orders: d, h, p, q");
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    const long value = items[i].integer();
+    if (value < 0 || value > kHighest) throw items[i].error(fmt::format("{}", value), "an order from 0 to 9");
+    values[i] = static_cast<int>(value);
+  }
+  if (values[3] > 0 && values[2] == 0) throw list.error("q without p", "a GARCH(p,q) with p of 1 or more");
+  return {values[0], values[1], values[2], values[3]};
+}
 
 std::string_view merge_name(array::Merge merge) {
   return kMerges[static_cast<std::size_t>(merge)];

@@ -45,6 +45,9 @@ struct ArrayConfig {
 /// @throws InputError  anything missing, out of range or unknown, with file and line
 [[nodiscard]] ArrayConfig read_array_config(const std::filesystem::path& file);
 
+/// [d, h, p, q] of an ARMA(d,h)-GARCH(p,q).  @throws InputError  not four whole numbers from 0 to 9, or q without p
+[[nodiscard]] noise::ArmaGarchOrders arma_garch_orders(const config::Node& list);
+
 [[nodiscard]] std::string_view merge_name(array::Merge merge);
 
 }  // namespace coast::cli

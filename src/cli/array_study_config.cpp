@@ -4,6 +4,7 @@
 
 #include <cmath>
 
+#include "array_config.hpp"
 #include "coast/io/yaml.hpp"
 #include "commands.hpp"
 #include "indented.hpp"
@@ -54,13 +55,7 @@ std::vector<noise::ArmaGarch> models_from(const Node& list) {
 
 noise::ArmaGarchOrders orders_from(const Node& root) {
   const auto list = root.find("orders");
-  if (!list) return {3, 2, 1, 1};
-  const std::vector<double> values = list->numbers();
-  if (values.size() != 4) throw list->error(fmt::format("{} numbers", values.size()), "four: d, h, p, q");
-  for (const double value : values)
-    if (value < 0.0 || value > 9.0 || value != std::floor(value))
-      throw list->error("not an order", "whole numbers from 0 to 9");
-  return {static_cast<int>(values[0]), static_cast<int>(values[1]), static_cast<int>(values[2]), static_cast<int>(values[3])};
+  return list ? arma_garch_orders(*list) : noise::ArmaGarchOrders{3, 2, 1, 1};
 }
 
 std::size_t count_at(const Node& root, std::string_view key, long fallback, long low, long high) {

@@ -68,23 +68,5 @@ TEST(NoiseOverTime, FollowsEachSensorsOwn) {
   EXPECT_NEAR(sd.row(3).mean(), 0.04, 0.0008);
 }
 
-TEST(OwnDensities, AreVarianceTimesIntervalOfWhiteNoise) {
-  const std::vector<double> sd{0.01, 0.02, 0.03, 0.02};
-  const Signals signals = noisy_array(sd, 200000, 9);
-  const std::vector<double> density = own_densities(signals, 1, 0.1);
-  // 20000 differences of block means, effectively 2/3 as many: 1.2 % each; about twice that after solving.
-  for (std::size_t k = 0; k < 4; ++k) EXPECT_NEAR(density[k] / (sd[k] * sd[k] * signals.dt), 1.0, 0.12) << k;
-}
-
-TEST(OwnDensities, SeeThroughASensorsOwnFilter) {
-  Signals signals = noisy_array({0.01, 0.01, 0.01}, 100000, 10);
-  for (SensorSignals& sensor : signals.sensors)  // mean of two neighbours: half the variance, the same density
-    for (Eigen::Index n = sensor.values.cols() - 1; n > 0; --n)
-      sensor.values.col(n) = (0.5 * (sensor.values.col(n) + sensor.values.col(n - 1))).eval();
-  const std::vector<double> density = own_densities(signals, 0, 0.5);
-  // 2000 differences: 3 %, about twice that after solving; the filter itself takes 1/50 of a block away.
-  for (const double q : density) EXPECT_NEAR(q / (1e-4 * signals.dt), 1.0, 0.2);
-}
-
 }  // namespace
 }  // namespace coast::array

@@ -40,8 +40,4 @@ struct NoiseOverTime {
 /// in at least half of the block.
 [[nodiscard]] NoiseOverTime noise_over_time(const Signals& signals, int channel, double window_s);
 
-/// Density of the white noise of each sensor, [signal]^2/Hz: own variance of means over `average_s`, times that time. Equal to
-/// variance times sample interval where the noise is white; where a sensor filters its own output it is not.
-[[nodiscard]] std::vector<double> own_densities(const Signals& signals, int channel, double average_s);
-
 }  // namespace coast::array
