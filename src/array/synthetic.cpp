@@ -126,10 +126,19 @@ Expectation measured_expectation(const NoiseOverTime& noise, Eigen::Index sample
 }
 
 /// Variances that the weights are made of: equal, constant or as expected for the sample.
-Eigen::VectorXd variances_for_weights(const MergeOptions& options, const Eigen::VectorXd& mean_variance,
+Eigen::VectorXd variances_for_weights(const MergeOptions& options, int channel, const Eigen::VectorXd& mean_variance,
                                       const Eigen::Ref<const Eigen::VectorXd>& expected) {
-  if (options.merge == Merge::kMean) return Eigen::VectorXd::Ones(expected.size());
-  if (options.merge == Merge::kWeighted) return mean_variance;
+  switch (options.merge) {
+    case Merge::kMean:
+      return Eigen::VectorXd::Ones(expected.size());
+    case Merge::kWeighted:
+      return mean_variance;
+    case Merge::kExtended:
+      return options.weights.row(channel).transpose().cwiseInverse();
+    case Merge::kGarch:
+    case Merge::kCorrected:
+      break;
+  }
   return expected;
 }
 
@@ -143,7 +152,7 @@ void merge_samples(const Signals& signals, int channel, const MergeOptions& opti
   merged.weight = Eigen::VectorXd::Zero(sensors);
   Eigen::VectorXd weight(sensors);
   for (Eigen::Index n = 0; n < samples; ++n) {
-    weight = variances_for_weights(options, mean_variance, expected.variance.col(n)).cwiseInverse();
+    weight = variances_for_weights(options, channel, mean_variance, expected.variance.col(n)).cwiseInverse();
     for (Eigen::Index k = 0; k < sensors; ++k)
       if (!signals.sensors[static_cast<std::size_t>(k)].may_use(channel, static_cast<std::size_t>(n))) weight(k) = 0.0;
     if (!(weight.sum() > 0.0) || !std::isfinite(weight.sum())) {  // nobody, or no noise at all: what is there counts alike

@@ -27,7 +27,7 @@ defects: {find: true, false_alarms_per_hour: 0.1, recovery_s: 5}
 merge: {method: corrected, orders: [3, 2, 1, 1]}
 )";
 
-constexpr std::array<std::string_view, 4> kMerges{"mean", "weighted", "garch", "corrected"};
+constexpr std::array<std::string_view, 5> kMerges{"mean", "weighted", "garch", "corrected", "extended"};
 
 using config::Node;
 
@@ -60,6 +60,7 @@ ArrayImu imu_from(const Node& node, TimeSource time, std::size_t index) {
     imu.counting = counting_from(node);
   }
   imu.frame = frame_from(node);
+  if (const auto model = node.find("error_model")) imu.model = noise::ImuErrorModel::from(io::load_yaml(model->path()));
   return imu;
 }
 
@@ -139,6 +140,11 @@ void read_merge(const Node& root, ArrayConfig& config) {
   const Node merge = root.section("merge");
   const std::vector<std::string_view> names(kMerges.begin(), kMerges.end());
   config.merge.merge = static_cast<array::Merge>(merge.choice("method", names, 1));
+  if (config.merge.merge == array::Merge::kExtended)
+    for (const ArrayImu& imu : config.imus)
+      if (!imu.model)
+        throw merge.at("method").error(fmt::format("extended, and no error_model of {}", imu.name),
+                                       "`error_model` of every IMU: its own error states are made of it");
   read_orders(merge, config.merge);
   config.merge.window_s = merge.number_within("window_s", config.merge.window_s, 0.1, 1e5);
   config.assembly.offset_window_s = merge.number_within("offset_window_s", config.assembly.offset_window_s, 1.0, 1e6);

@@ -13,6 +13,7 @@
 #include "coast/config/node.hpp"
 #include "coast/io/imu.hpp"
 #include "coast/io/packets.hpp"
+#include "coast/noise/error_model.hpp"
 
 namespace coast::cli {
 
@@ -21,6 +22,7 @@ struct ArrayImu {
   std::variant<io::ImuFileOptions, io::PacketFileOptions> file;
   array::Counting counting;  ///< of packets
   array::SensorFrame frame;
+  std::optional<noise::ImuErrorModel> model;  ///< of its own error states
 };
 
 enum class TimeSource {

@@ -7,6 +7,7 @@
 
 #include "calibration_result.hpp"
 #include "calibration_units.hpp"
+#include "coast/config/quoted.hpp"
 #include "coast/geo/units.hpp"
 
 namespace coast::cli {
@@ -97,12 +98,6 @@ std::string sensor_yaml(const CalibrationConfig& config, const CalibrationResult
   return text;
 }
 
-std::string quoted(const std::string& text) {
-  std::string result = "'";
-  for (const char c : text) result += c == '\'' ? std::string("''") : std::string(1, c);
-  return result + "'";
-}
-
 }  // namespace
 
 std::string error_model_yaml(const CalibrationConfig& config, const CalibrationResult& result) {
@@ -113,7 +108,7 @@ std::string error_model_yaml(const CalibrationConfig& config, const CalibrationR
   for (const ReadRecord& record : result.records)
     text += fmt::format("#   {}, {} samples, {:.0f} s\n", std::filesystem::path(record.source).filename().string(),
                         record.samples, record.duration);
-  text += fmt::format("schema: coast.imu_error_model/1\nsensor: {}\nrate_hz: {:.10g}\n", quoted(config.sensor),
+  text += fmt::format("schema: coast.imu_error_model/1\nsensor: {}\nrate_hz: {:.10g}\n", config::quoted(config.sensor),
                       1.0 / result.interval);
   for (const Sensor sensor : {Sensor::kGyro, Sensor::kAccel}) text += sensor_yaml(config, result, sensor);
   return text;

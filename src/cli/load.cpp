@@ -11,6 +11,7 @@
 #include "coast/geo/rotation.hpp"
 #include "coast/ins/mounting.hpp"
 #include "coast/io/inspect.hpp"
+#include "coast/io/member_blocks.hpp"
 #include "coast/io/noise_levels.hpp"
 #include "coast/record/error.hpp"
 #include "ppk_summary.hpp"
@@ -61,6 +62,7 @@ Recordings load(const RunConfig& config, const std::function<void(double)>& ppk_
     recordings.imu = io::read_imu(config.imu, recordings.gnss.fixes.front().t);
   }
   if (config.noise_levels) recordings.imu.noise = io::read_noise_levels(*config.noise_levels);
+  if (config.members) recordings.imu.members = io::read_member_blocks(*config.members, config.setup.model.members());
   ins::to_body(recordings.imu, config.setup.C_s_b);
   io::Inspection inspection = io::inspect(recordings.imu, recordings.gnss);
   std::ranges::move(inspection.sentences, std::back_inserter(recordings.inspection));

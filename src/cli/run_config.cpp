@@ -158,6 +158,11 @@ void read_imu(const Node& imu, RunConfig& run, estimate::NoiseFitChoice& choice)
   if (const auto levels = imu.find("noise_levels")) run.noise_levels = levels->path();
   run.setup.C_s_b = ins::C_s_b(ins::MountingOptions::from(imu));
   run.setup.model = noise::ImuErrorModel::from(io::load_yaml(imu.at("error_model").path()));
+  if (const auto members = imu.find("members")) {
+    if (run.setup.model.members().empty())
+      throw members->error("members, but no `process: share` in the error model", "the error model of `coast synth` with them");
+    run.members = members->path();
+  }
   run.setup.lever_arm_b = imu.at("lever_arm_m").vector3();
   run.setup.filter.auxiliary.lever_arm_sd_m = imu.number_within("lever_arm_sd_m", 0.0, 0.0, 100.0);
   run.setup.high_order_compensation = imu.choice("compensation", {"two_sample", "chebyshev"}, 0) == 1;

@@ -45,6 +45,7 @@ struct RunConfig {
   std::filesystem::path file;
   io::ImuFileOptions imu;
   std::optional<std::filesystem::path> noise_levels;  ///< of the IMU over time
+  std::optional<std::filesystem::path> members;       ///< what each member of a synthetic IMU measured
   io::GnssFileOptions gnss;
   std::optional<PpkConfig> ppk;  ///< in place of a file of positions
   bool tight = false;            ///< its observations, in place of its positions, go into the filter

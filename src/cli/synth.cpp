@@ -4,7 +4,9 @@
 #include <cmath>
 #include <mutex>
 
+#include "coast/array/extended.hpp"
 #include "coast/array/resample.hpp"
+#include "coast/io/member_blocks.hpp"
 #include "coast/io/writers.hpp"
 #include "coast/record/error.hpp"
 #include "coast/report/render.hpp"
@@ -16,6 +18,8 @@
 namespace coast::cli {
 
 namespace {
+
+constexpr double kMemberBlock = 1.0;  // s: the members' errors change slowly
 
 record::ImuRecording read_tagged(const ArrayConfig& config, std::size_t k, std::optional<geo::GpsTime> near) {
   const ArrayImu& imu = config.imus[k];
@@ -81,6 +85,18 @@ ChannelErrors errors_against(const Eigen::RowVectorXd& truth, const array::Signa
   return errors;
 }
 
+std::string synthetic_name(const ArrayConfig& config) {
+  return fmt::format("synthetic IMU of {}, {}", config.imus.size(), merge_name(config.merge.merge));
+}
+
+std::vector<array::ModelledSensor> modelled_sensors(const ArrayConfig& config, const array::Assembly& assembly) {
+  std::vector<array::ModelledSensor> sensors;
+  for (std::size_t k = 0; k < config.imus.size(); ++k)
+    sensors.push_back({config.imus[k].name, &*config.imus[k].model,
+                       assembly.mounting ? assembly.mounting->sensors[k].frame.C_s_b : config.imus[k].frame.C_s_b});
+  return sensors;
+}
+
 void merge_all(const ArrayConfig& config, SynthResult& result, ProgressLine& line) {
   constexpr double kAverage = 1.0;  // s: slow errors are told from means over this
   const array::Assembly& assembly = result.assembly;
@@ -88,15 +104,27 @@ void merge_all(const ArrayConfig& config, SynthResult& result, ProgressLine& lin
   result.channels.resize(array::kChannels);
   result.remaining.resize(array::kChannels);
   if (reference) result.against_reference.resize(array::kChannels);
+  array::MergeOptions options = config.merge;
+  if (options.merge == array::Merge::kExtended) {
+    const std::vector<array::ModelledSensor> sensors = modelled_sensors(config, assembly);
+    options.weights = array::extended_weights(sensors);
+    result.extended = array::extended_error_model(synthetic_name(config), 1.0 / assembly.signals.dt, sensors);
+  }
   std::mutex mutex;
   double done = 0.0;
   tbb::parallel_for(0, array::kChannels, [&](int c) {
     const auto at = static_cast<std::size_t>(c);
     std::optional<Eigen::VectorXd> truth;
     if (reference) truth = reference->values.row(c).transpose();
-    result.channels[at] = array::merge_channel(assembly.levelled, c, config.merge, truth);
+    result.channels[at] = array::merge_channel(assembly.levelled, c, options, truth);
     if (reference) result.against_reference[at] = errors_against(truth->transpose(), assembly.levelled, c, result.channels[at]);
-    result.remaining[at] = array::remaining_errors(assembly.signals, c, kAverage, array::white_share(result.channels[at]));
+    if (result.extended) {
+      result.remaining[at].in_words = "error states of each IMU";
+      result.channels[at].value = array::with_offsets(assembly.signals, assembly.levelled, c, result.channels[at].value,
+                                                      options.weights.row(c).transpose());
+    } else {
+      result.remaining[at] = array::remaining_errors(assembly.signals, c, kAverage, array::white_share(result.channels[at]));
+    }
     const std::scoped_lock lock(mutex);
     done += 1.0 / array::kChannels;
     line.show("merging", done);
@@ -107,9 +135,12 @@ void write_results(const ArrayConfig& config, const SynthResult& result, const s
   const report::Page page = synth_page(config, result);
   io::write_imu_csv(out / "imu.csv", synthetic_imu(result));
   io::write_text(out / "noise.csv", noise_csv(result));
-  io::write_text(out / "error_model.yaml", array::error_model_yaml(fmt::format("synthetic IMU of {}, {}", config.imus.size(),
-                                                                               merge_name(config.merge.merge)),
-                                                                   1.0 / result.assembly.signals.dt, result.remaining));
+  io::write_text(out / "error_model.yaml",
+                 result.extended
+                     ? result.extended->yaml()
+                     : array::error_model_yaml(synthetic_name(config), 1.0 / result.assembly.signals.dt, result.remaining));
+  if (result.extended)
+    io::write_member_blocks(out / "members.csv", array::member_blocks(result.assembly.signals, kMemberBlock));
   io::write_text(out / "synth.json", synth_json(config, result));
   io::write_text(out / "array.resolved.yaml", config.root.resolved_yaml());
   io::write_text(out / "report.json", report::to_json(page));
@@ -143,8 +174,10 @@ void synth(const std::filesystem::path& array_yaml, const CommonOptions& options
   if (options.quiet) return;
   for (const std::string& sentence : synth_sentences(config, result)) fmt::print("{}\n", sentence);
   const geo::GpsTime start = result.assembly.signals.start;
-  fmt::print("in run.yaml: imu: {{file: {}, gps_week: {}, error_model: {}, noise_levels: {}}}\n", (out / "imu.csv").string(),
-             start.week(), (out / "error_model.yaml").string(), (out / "noise.csv").string());
+  const std::string over_time = result.extended ? fmt::format("members: {}", (out / "members.csv").string())
+                                                : fmt::format("noise_levels: {}", (out / "noise.csv").string());
+  fmt::print("in run.yaml: imu: {{file: {}, gps_week: {}, error_model: {}, {}}}\n", (out / "imu.csv").string(), start.week(),
+             (out / "error_model.yaml").string(), over_time);
 }
 
 }  // namespace coast::cli

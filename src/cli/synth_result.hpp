@@ -26,6 +26,7 @@ struct SynthResult {
   array::Assembly assembly;
   std::vector<array::MergedChannel> channels;     ///< rates x, y, z, specific forces x, y, z
   std::vector<array::RemainingErrors> remaining;  ///< likewise
+  std::optional<noise::ImuErrorModel> extended;   ///< of the sum, where each IMU keeps its own error states
   std::vector<ChannelErrors> against_reference;   ///< likewise; empty without a reference
   record::Events events;
 };

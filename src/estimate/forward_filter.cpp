@@ -28,11 +28,29 @@ AuxiliaryStates with_slots(AuxiliaryStates auxiliary, const CarrierObservations*
   return auxiliary;
 }
 
+void check_members(const record::MemberBlocks& recorded, const StateLayout& layout) {
+  if (recorded.names.empty()) return;
+  std::vector<std::string> names;
+  bool noisy = true;
+  for (const StateLayout::Member& member : layout.members()) {
+    names.push_back(member.name);
+    noisy = noisy && member.gyro_density.minCoeff() > 0.0 && member.accel_density.minCoeff() > 0.0;
+  }
+  if (names != recorded.names)
+    throw InputError({recorded.source, 0, fmt::format("members {}", fmt::join(recorded.names, ", ")),
+                      fmt::format("those that the error model has shares of, in their order: {}", fmt::join(names, ", ")),
+                      "Both files come from one run of `coast synth`."});
+  if (!noisy)
+    throw InputError({recorded.source, 0, "members without white noise in the error model", "white noise on every axis of each",
+                      "Without it their differences would be exact."});
+}
+
 }  // namespace
 
 ForwardFilter::ForwardFilter(const Mission& mission, const noise::ImuErrorModel& model, const FilterOptions& options)
     : mission_(mission), options_(options), layout_(model, mission.C_s_b, with_slots(options.auxiliary, mission.carrier)) {
   if (!(options.knot_interval_s > 0.0)) throw std::invalid_argument("FilterOptions::knot_interval_s must be above zero");
+  check_members(mission.imu.members, layout_);
   // The closed form that carries driving noise into the navigation states within an interval wants it short.
   knot_interval_ = std::min(options.knot_interval_s, std::max(0.2 * layout_.shortest_time(), 2.0 / mission.imu.rate_hz));
 }

@@ -29,6 +29,10 @@ carrier::DifferenceEpoch highest(carrier::DifferenceEpoch epoch, std::size_t sat
   return epoch;
 }
 
+geo::GpsTime middle(const record::MemberBlocks::Block& block) {
+  return block.from + 0.5 * (block.to - block.from);
+}
+
 }  // namespace
 
 record::NavState repeat_nominal(const Mission& mission, const Knot& knot, geo::GpsTime end, Navigator& navigator,
@@ -84,7 +88,7 @@ void ForwardPass::start(const FilterState& state) {
       remainder_ = {left * after->dt, left * after->dtheta, left * after->dv};
     }
   }
-  skip_fixes(state.nav.t - kTimeTolerance);
+  skip_measurements(state.nav.t - kTimeTolerance);
   knot();
   if (outputs_.epochs) outputs_.epochs({state_.nav, cov_at_start_});
 }
@@ -92,7 +96,7 @@ void ForwardPass::start(const FilterState& state) {
 void ForwardPass::start(const Knot& knot) {
   begin(knot.post, knot.P_post);
   if (tight_) tight_->begin(knot);
-  skip_fixes(knot.post.nav.t + 2.0 * kTimeTolerance);  // those of the knot itself are used
+  skip_measurements(knot.post.nav.t + 2.0 * kTimeTolerance);  // those of the knot itself are used
   next_sample_ = knot.next_sample;
   remainder_ = knot.remainder;
   knot_ = knot;
@@ -109,8 +113,10 @@ void ForwardPass::begin(const Navigator::Start& start, const Eigen::MatrixXd& P)
   last_used_ = start.nav.t;
 }
 
-void ForwardPass::skip_fixes(geo::GpsTime before) {
+void ForwardPass::skip_measurements(geo::GpsTime before) {
   while (next_fix_ < gnss_epochs() && gnss_time(next_fix_) < before) ++next_fix_;
+  const std::vector<record::MemberBlocks::Block>& blocks = mission_.imu.members.blocks;
+  while (next_block_ < blocks.size() && middle(blocks[next_block_]) < before) ++next_block_;
 }
 
 std::size_t ForwardPass::gnss_epochs() const {
@@ -125,6 +131,8 @@ geo::GpsTime ForwardPass::gnss_time(std::size_t index) const {
 geo::GpsTime ForwardPass::next_knot_time(geo::GpsTime end) const {
   geo::GpsTime t = std::min(end, state_.nav.t + knot_interval_);
   if (next_fix_ < gnss_epochs()) t = std::min(t, gnss_time(next_fix_));
+  const std::vector<record::MemberBlocks::Block>& blocks = mission_.imu.members.blocks;
+  if (next_block_ < blocks.size()) t = std::min(t, middle(blocks[next_block_]));
   return t;
 }
 
@@ -228,6 +236,9 @@ void ForwardPass::knot() {
   if (outputs_.at_knots) outputs_.at_knots(state_);
   C_n_e_ = geo::C_n_e(geo::geodetic_from_ecef(state_.nav.r_eb_e));  // updates move the point by metres, this by 1e-6
   while (next_fix_ < gnss_epochs() && gnss_time(next_fix_) - state_.nav.t <= kTimeTolerance) take_gnss(next_fix_++);
+  const std::vector<record::MemberBlocks::Block>& blocks = mission_.imu.members.blocks;
+  while (next_block_ < blocks.size() && middle(blocks[next_block_]) - state_.nav.t <= kTimeTolerance)
+    member_updates(blocks[next_block_++]);
   vehicle_updates();
   navigator_.correct(state_.nav, state_.x);
   if (outputs_.epochs) cov_at_start_ = nav_covariance_n(state_.P.topLeftCorner<kNav, kNav>(), state_.nav.r_eb_e);
@@ -312,6 +323,13 @@ void ForwardPass::vehicle_updates() {
     try_update(non_holonomic(state_, context(), *vehicle.non_holonomic), record::FixQuality::kUnknown);
 }
 
+void ForwardPass::member_updates(const record::MemberBlocks::Block& block) {
+  for (const noise::Sensor sensor : {noise::Sensor::kGyro, noise::Sensor::kAccel})
+    for (std::size_t j = 1; j < block.means.size(); ++j)
+      if (const auto difference = member_difference(state_, layout_, block, sensor, j))
+        try_update(*difference, record::FixQuality::kUnknown);
+}
+
 void ForwardPass::try_update(const Linearised& measurement, record::FixQuality quality) {
   Innovation step = innovation(state_, measurement);
   const bool used = !gate_refuses(measurement, step.nis);
@@ -379,9 +397,9 @@ void ForwardPass::record_innovation(const Linearised& m, const Innovation& step,
   r.dof = static_cast<int>(m.nu.size());
   r.nis = step.nis;
   r.quality = quality;
-  if (m.kind == UpdateKind::kNonHolonomic) {
-    r.nu.head<2>() = m.nu;
-    r.sd.head<2>() = step.S.diagonal().cwiseSqrt();
+  if (m.kind == UpdateKind::kNonHolonomic || m.kind == UpdateKind::kMemberDifference) {
+    r.nu.head(m.nu.size()) = m.nu;
+    r.sd.head(m.nu.size()) = step.S.diagonal().cwiseSqrt();
   } else {
     const Eigen::Matrix3d S_n = C_n_e_.transpose() * step.S * C_n_e_;
     r.nu = C_n_e_.transpose() * m.nu;

@@ -28,7 +28,7 @@ class ForwardPass {
 
  private:
   void begin(const Navigator::Start& start, const Eigen::MatrixXd& P);
-  void skip_fixes(geo::GpsTime before);
+  void skip_measurements(geo::GpsTime before);
   [[nodiscard]] geo::GpsTime next_knot_time(geo::GpsTime end) const;
   [[nodiscard]] std::size_t gnss_epochs() const;
   [[nodiscard]] geo::GpsTime gnss_time(std::size_t index) const;
@@ -43,6 +43,7 @@ class ForwardPass {
   void knot();
   void gnss_updates(const record::GnssFix& fix);
   void vehicle_updates();
+  void member_updates(const record::MemberBlocks::Block& block);
   void try_update(const Linearised& measurement, record::FixQuality quality);
   [[nodiscard]] bool gate_refuses(const Linearised& measurement, double nis);
   /// Of positions. @return whether the filter has refused for so long that it is wrong itself
@@ -72,6 +73,7 @@ class ForwardPass {
   std::size_t noise_level_ = 0;  ///< of the recording, the one at hand
   ins::RawIncrement remainder_;
   std::size_t next_fix_ = 0;
+  std::size_t next_block_ = 0;  ///< of the members
   std::optional<TightCoupling> tight_;
   geo::GpsTime last_constraint_;
   geo::GpsTime first_refused_;

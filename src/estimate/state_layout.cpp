@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <Eigen/Eigenvalues>
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -14,16 +15,16 @@ namespace {
 
 constexpr std::array<char, 3> kAxis{'x', 'y', 'z'};
 
-std::optional<Eigen::Vector3d> signal_axis(noise::Input input, int axis, const Eigen::Matrix3d& C_s_b) {
+std::optional<int> signal_axis(noise::Input input, int axis) {
   switch (input) {
     case noise::Input::kOne:
       return std::nullopt;
     case noise::Input::kOwnAxis:
-      return C_s_b.col(axis);
+      return axis;
     case noise::Input::kNextAxis:
-      return C_s_b.col((axis + 1) % 3);
+      return (axis + 1) % 3;
     case noise::Input::kPrevAxis:
-      return C_s_b.col((axis + 2) % 3);
+      return (axis + 2) % 3;
   }
   return std::nullopt;
 }
@@ -38,10 +39,19 @@ double correlation_time(const noise::Process& process) {
   return farthest > 0.0 ? interval / farthest : std::numeric_limits<double>::infinity();
 }
 
+void add_white_noise(const noise::Process& process, const noise::Share& share, noise::Sensor sensor, int axis,
+                     StateLayout::Member& member) {
+  if (process.input() != noise::Input::kOne) return;
+  const double density = process.white_density().value + process.as_white().value_or(geo::Psd{}).value;
+  (sensor == noise::Sensor::kGyro ? member.gyro_density : member.accel_density)(axis) +=
+      density / (share.weight * share.weight);
+}
+
 }  // namespace
 
 StateLayout::StateLayout(const noise::ImuErrorModel& model, const Eigen::Matrix3d& C_s_b, const AuxiliaryStates& auxiliary)
     : shortest_time_(std::numeric_limits<double>::infinity()) {
+  for (const std::string& name : model.members()) members_.push_back({.name = name});
   add_sensor(model, noise::Sensor::kGyro, C_s_b);
   add_sensor(model, noise::Sensor::kAccel, C_s_b);
   sensor_end_ = size_;
@@ -57,12 +67,18 @@ StateLayout::StateLayout(const noise::ImuErrorModel& model, const Eigen::Matrix3
   size_ += auxiliary.carrier_slots;
 }
 
+std::size_t StateLayout::member(const std::string& name) const {
+  return static_cast<std::size_t>(std::ranges::find(members_, name, &Member::name) - members_.begin());
+}
+
 void StateLayout::add_sensor(const noise::ImuErrorModel& model, noise::Sensor sensor, const Eigen::Matrix3d& C_s_b) {
   const bool gyro = sensor == noise::Sensor::kGyro;
   Eigen::Vector3d density_s;
   for (int axis = 0; axis < 3; ++axis) {
     density_s(axis) = model.white_density(sensor, axis).value;
     for (const noise::ProcessPtr& process : model.axes(sensor)[static_cast<std::size_t>(axis)]) {
+      const std::optional<noise::Share> share = process->share();
+      if (share) add_white_noise(*process, *share, sensor, axis, members_[member(share->member)]);
       if (process->states() == 0 || process->as_white()) continue;
       SensorBlock block;
       block.process = process;
@@ -73,7 +89,14 @@ void StateLayout::add_sensor(const noise::ImuErrorModel& model, noise::Sensor se
       process->output(block.output);
       block.sensor = sensor;
       block.response_b = C_s_b.col(axis);
-      block.signal_b = signal_axis(process->input(), axis, C_s_b);
+      block.axis = axis;
+      block.signal_axis = signal_axis(process->input(), axis);
+      if (block.signal_axis) block.signal_b = C_s_b.col(*block.signal_axis);
+      if (share) {
+        block.name += " of " + share->member;
+        block.member = member(share->member);
+        block.own_output = block.output / std::abs(share->weight);
+      }
       size_ += block.size;
       shortest_time_ = std::min(shortest_time_, correlation_time(*process));
       sensors_.push_back(std::move(block));

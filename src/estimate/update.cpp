@@ -22,6 +22,8 @@ std::string_view name(UpdateKind kind) {
       return "non_holonomic";
     case UpdateKind::kCarrierPhase:
       return "carrier_phase";
+    case UpdateKind::kMemberDifference:
+      return "member_difference";
   }
   return "";
 }

@@ -6,6 +6,21 @@
 
 namespace coast::ins {
 
+namespace {
+
+void reverse(record::MemberBlocks& members, geo::GpsTime mirror) {
+  for (record::MemberBlocks::Block& block : members.blocks) {
+    const geo::GpsTime to = mirrored(block.from, mirror);
+    block.from = mirrored(block.to, mirror);
+    block.to = to;
+    for (auto& means : block.means)
+      if (means) means->gyro = -means->gyro;
+  }
+  std::reverse(members.blocks.begin(), members.blocks.end());
+}
+
+}  // namespace
+
 BodyIncrement reversed(const BodyIncrement& increment) {
   return {increment.dt, -increment.phi, geo::rotation_matrix(-increment.phi) * increment.u};
 }
@@ -28,6 +43,7 @@ void reverse(record::ImuRecording& recording, geo::GpsTime mirror, IncrementKind
     level.to = to;
   }
   std::reverse(recording.noise.begin(), recording.noise.end());
+  reverse(recording.members, mirror);
 }
 
 void reverse(record::GnssRecording& recording, geo::GpsTime mirror) {

@@ -3,6 +3,7 @@
 #include <array>
 
 #include "coast/io/table.hpp"
+#include "week_time.hpp"
 
 namespace coast::io {
 
@@ -10,12 +11,6 @@ namespace {
 
 constexpr std::array kColumns{"gyro_x_radps_rthz", "gyro_y_radps_rthz", "gyro_z_radps_rthz",
                               "accel_x_mps2_rthz", "accel_y_mps2_rthz", "accel_z_mps2_rthz"};
-
-geo::GpsTime time_of(const TableReader& table, std::size_t week, std::size_t seconds) {
-  const double w = table.number(week), s = table.number(seconds);
-  if (w < 0.0 || w > 1e4 || s < 0.0 || s >= 604800.0) throw table.error("not a time", "GPS week and seconds of week");
-  return geo::GpsTime::from_week(static_cast<int>(w), s);
-}
 
 /// Squares of the columns relative to their means over time.
 void normalise(std::vector<record::NoiseLevel>& levels) {
@@ -48,7 +43,7 @@ std::vector<record::NoiseLevel> read_noise_levels(const std::filesystem::path& f
       if (!(density > 0.0 && density < 1e6)) throw table.error("a density of zero or less, or none", "a number above zero");
       (i < 3 ? level.gyro : level.accel)(static_cast<Eigen::Index>(i % 3)) = density * density;
     }
-    level.from = time_of(table, week, seconds);
+    level.from = week_time(table, week, seconds);
     if (!levels.empty()) {
       if (!(levels.back().from < level.from)) throw table.error("a time not behind the one before", "increasing times");
       levels.back().to = level.from;

@@ -2,8 +2,11 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 
+#include "coast/config/quoted.hpp"
+#include "coast/noise/share.hpp"
 #include "processes/processes.hpp"
 
 namespace coast::noise {
@@ -29,13 +32,6 @@ ImuErrorModel::Axes read_sensor(const config::Node& node, const EntryContext& co
     axes[i] = read_list(own ? *own : *all, context);
   }
   return axes;
-}
-
-// A YAML scalar in single quotes: the one style in which nothing but the quote itself needs care.
-std::string quoted(const std::string& text) {
-  std::string result = "'";
-  for (const char c : text) result += c == '\'' ? std::string("''") : std::string(1, c);
-  return result + "'";
 }
 
 }  // namespace
@@ -92,18 +88,32 @@ double ImuErrorModel::bias_sd(Sensor sensor, int axis) const {
   return std::sqrt(variance);
 }
 
+std::vector<std::string> ImuErrorModel::members() const {
+  std::vector<std::string> names;
+  for (const Axes* sensor : {&gyro_, &accel_})
+    for (const auto& axis : *sensor)
+      for (const ProcessPtr& process : axis)
+        if (const auto share = process->share(); share && !std::ranges::count(names, share->member))
+          names.push_back(share->member);
+  return names;
+}
+
 ImuErrorModel ImuErrorModel::with_white_noise_scaled(Sensor sensor, double factor) const {
   ImuErrorModel scaled = *this;
   if (factor == 1.0) return scaled;  // what rounds its samples goes on doing so
   for (auto& axis : sensor == Sensor::kGyro ? scaled.gyro_ : scaled.accel_)
     for (ProcessPtr& process : axis)
-      if (const double density = white_for_filter(*process); density > 0.0)
-        process = make_white_noise(std::sqrt(density) * factor, sensor);
+      if (const double density = white_for_filter(*process); density > 0.0) {
+        const std::optional<Share> share = process->share();
+        const double own = std::sqrt(density) / (share ? std::abs(share->weight) : 1.0);
+        process = make_white_noise(own * factor, sensor);
+        if (share) process = make_share(process, share->member, share->weight);
+      }
   return scaled;
 }
 
 std::string ImuErrorModel::yaml() const {
-  std::string text = fmt::format("schema: coast.imu_error_model/1\nsensor: {}\n", quoted(sensor_name_));
+  std::string text = fmt::format("schema: coast.imu_error_model/1\nsensor: {}\n", config::quoted(sensor_name_));
   if (rate_hz_ > 0.0) text += fmt::format("rate_hz: {:.17g}\n", rate_hz_);
   for (const Sensor sensor : {Sensor::kGyro, Sensor::kAccel}) {
     text += sensor == Sensor::kGyro ? "gyro:\n" : "accel:\n";

@@ -9,7 +9,7 @@ namespace coast::noise {
 const std::vector<Registration>& registry() {
   static const std::vector<Registration> table = {
       white_noise(), random_constant(), random_walk(), gauss_markov(), scale_factor(), misalignment(),
-      drift(),       rate_ramp(),       flicker(),     quantisation(), ar(),
+      drift(),       rate_ramp(),       flicker(),     quantisation(), ar(),           share(),
   };
   return table;
 }

@@ -10,6 +10,7 @@
 #include <numeric>
 #include <random>
 
+#include "coast/array/extended.hpp"
 #include "coast/array/remaining.hpp"
 #include "coast/ins/mounting.hpp"
 #include "coast/record/error.hpp"
@@ -95,15 +96,15 @@ struct FilterInput {
   noise::ImuErrorModel model;
 };
 
-FilterInput single_input(const ArrayOutagePlan& plan, const record::ImuRecording& truth, const Signals& signals,
-                         std::size_t k) {
+/// What is known of a single sensor: its slow errors, and the density of its noise at frequency zero.
+noise::ImuErrorModel single_model(const ArrayOutagePlan& plan, double rate_hz, double dt, std::size_t k) {
   std::vector<array::RemainingErrors> channels(kChannels);
   for (int c = 0; c < kChannels; ++c) {
     array::RemainingErrors& errors = channels[static_cast<std::size_t>(c)];
     errors.processes = plan.slow.axes(c < 3 ? noise::Sensor::kGyro : noise::Sensor::kAccel)[static_cast<std::size_t>(c % 3)];
-    errors.processes.push_back(array::white_noise_of(density_of(noise_of(plan, k, c), signals.dt), c));
+    errors.processes.push_back(array::white_noise_of(density_of(noise_of(plan, k, c), dt), c));
   }
-  return {recording_of(truth, signals.sensors[k].values), array::error_model_of("single", truth.rate_hz, channels)};
+  return array::error_model_of("single", rate_hz, channels);
 }
 
 FilterInput merged_input(const ArrayOutagePlan& plan, const record::ImuRecording& truth, const Signals& signals,
@@ -119,6 +120,24 @@ FilterInput merged_input(const ArrayOutagePlan& plan, const record::ImuRecording
   }
   FilterInput input{recording_of(truth, values), array::error_model_of("merged", truth.rate_hz, remaining)};
   if (merge == array::Merge::kGarch || merge == array::Merge::kCorrected) input.imu.noise = levels_of(signals, merged);
+  return input;
+}
+
+/// Every sensor with what is known of it, each with error states of its own: weighted by its white noise, biases kept, and the
+/// sensors' differences for the filter.
+FilterInput extended_input(const ArrayOutagePlan& plan, const record::ImuRecording& truth, const Signals& signals) {
+  constexpr double kBlock = 1.0;  // s, as `coast synth` has it
+  std::vector<noise::ImuErrorModel> models;
+  for (std::size_t k = 0; k < signals.sensors.size(); ++k) models.push_back(single_model(plan, truth.rate_hz, signals.dt, k));
+  std::vector<array::ModelledSensor> sensors;
+  for (std::size_t k = 0; k < models.size(); ++k) sensors.push_back({signals.sensors[k].name, &models[k]});
+  const Eigen::MatrixXd weights = array::extended_weights(sensors);
+  Eigen::Matrix<double, kChannels, Eigen::Dynamic> sum(kChannels, static_cast<Eigen::Index>(signals.samples()));
+  sum.setZero();
+  for (std::size_t k = 0; k < sensors.size(); ++k)
+    sum += weights.col(static_cast<Eigen::Index>(k)).asDiagonal() * signals.sensors[k].values;
+  FilterInput input{recording_of(truth, sum), array::extended_error_model("extended", truth.rate_hz, sensors)};
+  input.imu.members = array::member_blocks(signals, kBlock);
   return input;
 }
 
@@ -144,8 +163,10 @@ std::vector<OutageResult> run_array_seed(const ArrayOutagePlan& plan, const Erro
     results.push_back(solve_outage(plan.scenario, mission.truth(), {std::move(input.imu), truth.gnss}, input.model, outage));
     if (seed > plan.first_seed) results.back().forward.series = results.back().smoothed->series = {};
   };
-  for (std::size_t k = 0; k < plan.gyro.size(); ++k) process(single_input(plan, truth.imu, signals, k));
+  for (std::size_t k = 0; k < plan.gyro.size(); ++k)
+    process({recording_of(truth.imu, signals.sensors[k].values), single_model(plan, truth.imu.rate_hz, signals.dt, k)});
   for (const NamedMerge& merge : kStudiedMerges) process(merged_input(plan, truth.imu, signals, levelled, merge.merge));
+  process(extended_input(plan, truth.imu, signals));
   return results;
 }
 
@@ -163,6 +184,7 @@ std::vector<ArrayOutageRun> run_array_outages(const ArrayOutagePlan& plan, const
   std::vector<ArrayOutageRun> runs;
   for (std::size_t k = 0; k < plan.gyro.size(); ++k) runs.push_back({fmt::format("single {}", k + 1), {}});
   for (const NamedMerge& merge : kStudiedMerges) runs.push_back({merge.name, {}});
+  runs.push_back({"extended", {}});
   for (ArrayOutageRun& run : runs) run.outages.resize(plan.seeds);
   std::mutex mutex;
   std::size_t done = 0;

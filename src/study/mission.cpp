@@ -45,20 +45,22 @@ double largest(const noise::ImuErrorModel& model, noise::Sensor sensor) {
 }
 
 // A bias known in body axes becomes the state of the additive process with the largest prior on each axis, less what other
-// states are known to be.
+// states are known to be; of a synthetic IMU, on each axis of every member, whose weights add up to one.
 void set_gyro_bias(const estimate::StateLayout& layout, Eigen::Vector3d bias_b, estimate::FilterState& state) {
-  std::array<const estimate::StateLayout::SensorBlock*, 3> widest{};
+  const std::size_t members = std::max<std::size_t>(1, layout.members().size());
+  std::vector<const estimate::StateLayout::SensorBlock*> widest(3 * members);
   for (const auto& block : layout.sensors()) {
     if (block.sensor != noise::Sensor::kGyro || block.signal_b) continue;
     bias_b -= block.output.dot(state.x.segment(block.offset, block.size)) * block.response_b;
     if (block.size != 1) continue;
     Eigen::Index axis = 0;
     block.response_b.cwiseAbs().maxCoeff(&axis);
-    auto& slot = widest[static_cast<std::size_t>(axis)];
+    auto& slot = widest[3 * block.member.value_or(0) + static_cast<std::size_t>(axis)];
     if (slot == nullptr || state.P(block.offset, block.offset) > state.P(slot->offset, slot->offset)) slot = &block;
   }
   for (const auto* block : widest)
-    if (block != nullptr && state.P(block->offset, block->offset) > 0.0) state.x(block->offset) = block->response_b.dot(bias_b);
+    if (block != nullptr && state.P(block->offset, block->offset) > 0.0)
+      state.x(block->offset) = (block->member ? block->own_output(0) : 1.0) * block->response_b.dot(bias_b);
 }
 
 }  // namespace

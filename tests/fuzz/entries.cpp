@@ -8,6 +8,7 @@
 #include "coast/io/gnss.hpp"
 #include "coast/io/imu.hpp"
 #include "coast/io/inspect.hpp"
+#include "coast/io/member_blocks.hpp"
 #include "coast/io/noise_levels.hpp"
 #include "coast/io/packets.hpp"
 #include "coast/io/products.hpp"
@@ -46,6 +47,16 @@ void check(const std::vector<record::NoiseLevel>& levels) {
     require(level.from < level.to, "levels last");
     require((level.gyro.array() > 0.0).all() && level.gyro.allFinite(), "noise is above zero");
     require((level.accel.array() > 0.0).all() && level.accel.allFinite(), "noise is above zero");
+  }
+}
+
+void check(const record::MemberBlocks& members) {
+  require(!members.blocks.empty(), "at least one block");
+  for (const record::MemberBlocks::Block& block : members.blocks) {
+    require(block.from < block.to, "blocks last");
+    require(block.means.size() == members.names.size(), "a place for each member");
+    for (const auto& means : block.means)
+      require(!means || (means->gyro.allFinite() && means->accel.allFinite()), "means are finite");
   }
 }
 
@@ -220,6 +231,10 @@ void noise_levels(std::string_view bytes) {
   read_and_check([&] { return io::read_noise_levels(as_file(bytes)); });
 }
 
+void member_blocks(std::string_view bytes) {
+  read_and_check([&] { return io::read_member_blocks(as_file(bytes), {"left", "right"}); });
+}
+
 void packets(std::string_view bytes) {
   io::PacketFileOptions options;
   options.file = as_file(bytes);
@@ -263,6 +278,7 @@ const std::vector<Entry>& entries() {
       {"sp3", sp3},
       {"rinex_clock", rinex_clock},
       {"antex", antex},
+      {"member_blocks", member_blocks},
       {"noise_levels", noise_levels},
       {"packets", packets},
       {"yaml", yaml},

@@ -42,6 +42,8 @@ TEST(NoiseLevels, SpoiledFilesAreRefusedWithTheirLine) {
   refused("2300,100,1,1,1,1,1,1\n2300,100,1,1,1,1,1,1\n", ":3");
   refused("2300,100,1,1,1,1,1,1\n2300,101,1,0,1,1,1,1\n", "above zero");
   refused("2300,100,1,1,1,1,1,1\n2300,101,1,nan,1,1,1,1\n", "above zero");
+  refused("nan,100,1,1,1,1,1,1\n2300,101,1,1,1,1,1,1\n", "not a time");
+  refused("2300,nan,1,1,1,1,1,1\n2300,101,1,1,1,1,1,1\n", "not a time");
   refused("2300,100,1,1,1,1,1,1\n2300,700000,1,1,1,1,1,1\n", "not a time");
 }
 

@@ -16,6 +16,7 @@ enum class Merge {
   kWeighted,   ///< weights by each sensor's mean own variance, constant in time
   kGarch,      ///< weights by each sensor's own variance as its GARCH model predicts it for the sample
   kCorrected,  ///< the same, and what the ARMA model predicts of each sensor's error taken off: Eq. (12)
+  kExtended,   ///< weights that are given, by each sensor's own error model (extended.hpp)
 };
 
 struct MergeOptions {
@@ -23,6 +24,7 @@ struct MergeOptions {
   noise::ArmaGarchOrders orders{3, 2, 1, 1};  ///< the paper's
   bool choose_orders = false;                 ///< by AICc, summed over the sensors of a channel, from `arma_garch_grid()`
   double window_s = 2.0;                      ///< of the noise over time
+  Eigen::MatrixXd weights = {};               ///< 6 x K, of kExtended
 };
 
 /// Whether a model left its sensor's residuals white, of even variance, and normal: standardised e / sigma.

@@ -49,6 +49,16 @@ class StateLayout {
     noise::Sensor sensor = noise::Sensor::kGyro;
     Eigen::Vector3d response_b;
     std::optional<Eigen::Vector3d> signal_b;
+    int axis = 0;                       ///< of the sensor
+    std::optional<int> signal_axis;     ///< the same as signal_b
+    std::optional<std::size_t> member;  ///< index in members(): whose error it is where several IMUs were merged
+    Eigen::RowVectorXd own_output;      ///< what the states add to that member's error, in the axes of the sum
+  };
+  /// One of several IMUs that were merged, where the error model has shares.
+  struct Member {
+    std::string name;
+    Eigen::Vector3d gyro_density = Eigen::Vector3d::Zero();  ///< of its own white noise, [signal]^2/Hz, sensor axes
+    Eigen::Vector3d accel_density = Eigen::Vector3d::Zero();
   };
 
   /// @param C_s_b sensor to body axes: processes live in sensor axes
@@ -57,6 +67,7 @@ class StateLayout {
   [[nodiscard]] int size() const { return size_; }
   [[nodiscard]] int sensor_end() const { return sensor_end_; }  ///< navigation and sensor states are [0, sensor_end)
   [[nodiscard]] const std::vector<SensorBlock>& sensors() const { return sensors_; }
+  [[nodiscard]] const std::vector<Member>& members() const { return members_; }
   [[nodiscard]] const std::vector<Block>& auxiliaries() const { return auxiliaries_; }
   [[nodiscard]] std::optional<int> lever_arm() const { return lever_arm_; }      ///< 3 states, b
   [[nodiscard]] std::optional<int> time_offset() const { return time_offset_; }  ///< 1 state, s
@@ -86,7 +97,9 @@ class StateLayout {
   int add_auxiliary(const std::string& name, double sigma, double beta, int count);
   int size_ = kNav;
   int sensor_end_ = kNav;
+  [[nodiscard]] std::size_t member(const std::string& name) const;
   std::vector<SensorBlock> sensors_;
+  std::vector<Member> members_;
   std::vector<Block> auxiliaries_;
   std::optional<int> lever_arm_;
   std::optional<int> time_offset_;

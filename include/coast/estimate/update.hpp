@@ -8,10 +8,11 @@
 
 #include "coast/estimate/filter_state.hpp"
 #include "coast/record/gnss.hpp"
+#include "coast/record/imu.hpp"
 
 namespace coast::estimate {
 
-enum class UpdateKind { kGnssPosition, kGnssVelocity, kZeroVelocity, kNonHolonomic, kCarrierPhase };
+enum class UpdateKind { kGnssPosition, kGnssVelocity, kZeroVelocity, kNonHolonomic, kCarrierPhase, kMemberDifference };
 [[nodiscard]] std::string_view name(UpdateKind kind);
 /// Whether it ties the position down.
 [[nodiscard]] constexpr bool is_position(UpdateKind kind) {
@@ -56,6 +57,16 @@ struct NonHolonomic {
   double yaw = 0.0;
 };
 [[nodiscard]] Linearised non_holonomic(const FilterState& state, const UpdateContext& context, const NonHolonomic& constraint);
+
+/// How member j of a synthetic IMU differs from the members before it, each of which has its own error states:
+///     mean_j = weighted mean of members 0 .. j-1 over the block
+/// on three axes, gyros or accelerometers. The differences of a block are independent of each other and of the noise of the
+/// sum.
+/// @param block  its members in the order of the layout's
+/// @return  nothing where member j, or all before it, may not be used
+[[nodiscard]] std::optional<Linearised> member_difference(const FilterState& state, const StateLayout& layout,
+                                                          const record::MemberBlocks::Block& block, noise::Sensor sensor,
+                                                          std::size_t j);
 
 /// What an update did, and what the backward recursion needs of it.
 struct AppliedUpdate {

@@ -25,6 +25,8 @@ class ImuErrorModel {
   [[nodiscard]] geo::Psd white_density(Sensor sensor, int axis) const;
   /// Standard deviation of the additive states of an axis at the start, [signal]: what alignment has to expect of a bias.
   [[nodiscard]] double bias_sd(Sensor sensor, int axis) const;
+  /// Whose errors the model has shares of, in the order in which they first appear.
+  [[nodiscard]] std::vector<std::string> members() const;
   [[nodiscard]] const std::string& sensor_name() const { return sensor_name_; }
   /// The same model with every white-noise density of one sensor multiplied (`factor` scales the standard deviation). Rounding
   /// of samples is white noise to a filter and becomes such under a factor other than 1.

@@ -32,6 +32,12 @@ struct Rounding {
   double step;  ///< [signal] s or [signal], > 0
 };
 
+/// Where a recording is the weighted sum of several IMUs: whose error a process is, and what that one counts.
+struct Share {
+  std::string member;
+  double weight = 1.0;
+};
+
 /// One process: error = (h x + white noise) * input, with x[k+1] = Phi(dt) x[k] + w[k], var w = Q_d(dt).
 ///
 /// All values are SI; `signal` below is rad/s (gyro) or m/s^2 (accelerometer) for additive processes, 1 otherwise.
@@ -70,6 +76,8 @@ class Process {
   [[nodiscard]] virtual std::optional<double> allan_variance(double tau) const = 0;
   /// Hadamard variance, [signal]^2, as above.
   [[nodiscard]] virtual std::optional<double> hadamard_variance(double tau) const = 0;
+  /// Of one among several IMUs that were merged: the output is the member's error times its weight.
+  [[nodiscard]] virtual std::optional<Share> share() const { return {}; }
   /// What the values say to a person; empty where they speak for themselves.
   [[nodiscard]] virtual std::string in_words() const { return {}; }
   /// The entry of an error-model file that makes this process again, in SI units.

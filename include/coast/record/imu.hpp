@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -24,6 +25,22 @@ struct NoiseLevel {
   Eigen::Vector3d accel = Eigen::Vector3d::Ones();
 };
 
+/// Where a recording is the weighted sum of several IMUs, its members: what each of them measured by itself, in means over
+/// blocks, in the axes of the recording.
+struct MemberBlocks {
+  struct Means {
+    Eigen::Vector3d gyro;   ///< rad/s
+    Eigen::Vector3d accel;  ///< m/s^2
+  };
+  struct Block {
+    geo::GpsTime from, to;
+    std::vector<std::optional<Means>> means;  ///< one per member; nothing where it may not be used all along
+  };
+  std::string source;  ///< file, for messages
+  std::vector<std::string> names;
+  std::vector<Block> blocks;  ///< in order, none over another
+};
+
 /// One IMU as recorded, in the sensor's own axes unless a function says otherwise. Strictly increasing in time.
 struct ImuRecording {
   std::string source;  ///< file, for messages
@@ -31,6 +48,7 @@ struct ImuRecording {
   std::vector<float> temperature;  ///< degC, one per sample, or empty
   double rate_hz = 0.0;            ///< 1 / median interval
   std::vector<NoiseLevel> noise;   ///< in order, one where the other ends; empty: the same all the time
+  MemberBlocks members;            ///< of a synthetic IMU whose members are told apart; empty otherwise
   Events events;                   ///< repairs and gaps found on reading
 };
 

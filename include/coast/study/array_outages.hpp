@@ -27,14 +27,15 @@ struct ArrayOutagePlan {
 
 /// One way, over the seeds.
 struct ArrayOutageRun {
-  std::string name;  ///< single 1, ..; mean; weighted; garch; corrected
+  std::string name;  ///< single 1, ..; mean; weighted; garch; corrected; extended
   std::vector<OutageResult> outages;
 };
 
 /// Every seed: K sensors' errors are drawn on one mission, each sensor by itself and every merge of them goes through `coast
 /// process`'s way with the scenario's first outage withheld. A single sensor's filter knows its slow errors and the density at
 /// frequency zero of its noise; a merge has what the differences of the sensors tell (`array::remaining_errors`), with noise
-/// over time where GARCH gives it. On all threads; the same numbers for any number of them.
+/// over time where GARCH gives it; the extended mechanisation knows of every sensor what its own filter knows. On all threads;
+/// the same numbers for any number of them.
 /// @throws InputError  no outage in the scenario; fewer than two sensors, or different numbers of gyros and accelerometers
 [[nodiscard]] std::vector<ArrayOutageRun> run_array_outages(const ArrayOutagePlan& plan,
                                                             const std::function<void(double)>& progress = {});

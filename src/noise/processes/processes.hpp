@@ -18,6 +18,7 @@ Registration rate_ramp();
 Registration flicker();
 Registration quantisation();
 Registration ar();
+Registration share();
 
 /// White noise of the given density, [signal]/sqrt(Hz).
 [[nodiscard]] ProcessPtr make_white_noise(double density, Sensor sensor);
