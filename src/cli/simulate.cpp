@@ -74,10 +74,13 @@ void write_array(const simulate::Scenario& scenario, const std::filesystem::path
     const simulate::Scenario::ArrayImu& imu = scenario.array[k];
     const std::string file = fmt::format("imu_{}.csv", imu.name);
     io::write_imu_csv(out / file, simulate::simulate_array_imu(scenario, k, threads));
+    const std::string model = fmt::format("error_model_{}.yaml", imu.name);
+    io::write_text(out / model, imu.error_model.yaml());
     const Eigen::Matrix3d& axes = imu.mounting.axes;
-    text += fmt::format("  - {{name: {}, file: {}, gps_week: {}, axes: [{}, {}, {}], mounting_deg: {}, position_m: {}}}\n",
-                        imu.name, file, scenario.start.week(), axis_name(axes.row(0)), axis_name(axes.row(1)),
-                        axis_name(axes.row(2)), list(imu.mounting.mounting / geo::kDegree), list(imu.position_b));
+    text += fmt::format(
+        "  - {{name: {}, file: {}, gps_week: {}, axes: [{}, {}, {}], mounting_deg: {}, position_m: {}, error_model: {}}}\n",
+        imu.name, file, scenario.start.week(), axis_name(axes.row(0)), axis_name(axes.row(1)), axis_name(axes.row(2)),
+        list(imu.mounting.mounting / geo::kDegree), list(imu.position_b), model);
   }
   io::write_text(out / "array.yaml", text);
 }

@@ -68,7 +68,7 @@ TEST(ArrayStudy, OfOutagesTakesEveryWayThroughTheFilter) {
                           "gyro: [{{alpha: [0.5], gamma0: 2.0e-5}}, {{alpha: [0.5], gamma0: 8.0e-5}}]\n"
                           "accel: [{{alpha: [0.5], gamma0: 1.0e-4}}, {{alpha: [0.5], gamma0: 4.0e-4}}]\n",
                           (parts / "scenario.yaml").string(), (parts / "slow.yaml").string()));
-  ASSERT_EQ(result["runs"].size(), 6U);
+  ASSERT_EQ(result["runs"].size(), 7U);
   for (const json& one : result["runs"]) {
     EXPECT_GT(one["forward"]["horizontal_rms_m"].get<double>(), 0.0);
     EXPECT_LT(one["smoothed"]["horizontal_rms_m"].get<double>(), one["forward"]["horizontal_rms_m"].get<double>());

@@ -87,10 +87,39 @@ TEST(SynthCommand, MergesAnArrayThatTheFilterTakes) {
   EXPECT_LT(merged, 5.0);  // m in 20 s: one sensor of this kind drifts by about 3
 }
 
+TEST(SynthCommand, ExtendedKeepsTheErrorStatesOfEachImu) {
+  const test::TemporaryDirectory folder;
+  const fs::path out = folder.path() / "out";
+  fs::copy(recorded_array(), folder.path(), fs::copy_options::recursive);
+  write(folder.path() / "array.yaml", text_of(folder.path() / "array.yaml") + "merge: {method: extended}\n");
+  const Outcome outcome =
+      run(fmt::format("synth '{}' --out '{}'", (folder.path() / "array.yaml").string(), out.string()), folder.path());
+  ASSERT_EQ(outcome.status, 0) << outcome.error;
+  test::expect_valid("imu_error_model", test::yaml_as_json(text_of(out / "error_model.yaml")));
+  const auto solve = [&](const std::string& name, const std::string& imu) {
+    std::string text = text_of(folder.path() / "run.yaml");
+    text.replace(text.find("file: imu.csv"), 13, imu);
+    text.replace(text.find("  error_model: error_model.yaml\n"), 32, "");
+    write(folder.path() / (name + ".yaml"), text);
+    const Outcome solved = run(fmt::format("process '{}'", (folder.path() / (name + ".yaml")).string()), folder.path());
+    EXPECT_EQ(solved.status, 0) << solved.error;
+    return read_json(folder.path() / (name + ".out") / "summary.json");
+  };
+  const std::string sum =
+      fmt::format("file: {}\n  error_model: {}", (out / "imu.csv").string(), (out / "error_model.yaml").string());
+  const json told_apart = solve("extended", sum + fmt::format("\n  members: {}", (out / "members.csv").string()));
+  for (const json& rms : told_apart["reference"]["smoothed"]["position_rms_m"]) EXPECT_LT(rms.get<double>(), 0.05);
+  EXPECT_LT(told_apart["outages"][0]["forward"]["max_m"][0].get<double>(), 5.0);
+  // Every member's states are there to be seen.
+  const std::string page = text_of(folder.path() / "extended.out" / "report.json");
+  for (const char* name : {"of front", "of left", "of right"}) EXPECT_NE(page.find(name), std::string::npos) << name;
+}
+
 TEST(SynthCommand, ResolvedFileGivesTheSameAgain) {
   const test::TemporaryDirectory folder;
   std::string text = text_of(recorded_array() / "array.yaml");
-  for (const char* file : {"imu_front.csv", "imu_left.csv", "imu_right.csv"})
+  for (const char* file : {"imu_front.csv", "imu_left.csv", "imu_right.csv", "error_model_front.yaml", "error_model_left.yaml",
+                           "error_model_right.yaml"})
     text.replace(text.find(file), std::string(file).size(), (recorded_array() / file).string());
   write(folder.path() / "array.yaml", text + "merge: {method: corrected, orders: [1, 0, 1, 1]}\nmounting: {refine: true}\n");
   const Outcome first = run(fmt::format("synth '{}'", (folder.path() / "array.yaml").string()), folder.path());
@@ -131,6 +160,7 @@ INSTANTIATE_TEST_SUITE_P(
                     SpoiledArray{"imus: [{file: a.csv}, {file: b.csv}]\nmerge: {method: best}\n", "mean"},
                     SpoiledArray{"imus: [{file: a.csv}, {file: b.csv}]\nmerge: {orders: [1, 1, 0, 1]}\n", "q without p"},
                     SpoiledArray{"imus: [{file: a.csv}, {file: b.csv}]\nmerge: {orders: [1, 1]}\n", "d, h, p, q"},
+                    SpoiledArray{"imus: [{file: a.csv}, {file: b.csv}]\nmerge: {method: extended}\n", "no error_model of imu1"},
                     SpoiledArray{"imus: [{file: a.csv}, {file: b.csv}]\ndefect: {find: true}\n", "defects"},
                     SpoiledArray{"imus: [{file: a.csv}, {file: b.csv}]\ntime: {by: packets, gps_week: 2300}\n", "columns"},
                     SpoiledArray{"imus: [{file: a.csv}, {file: b.csv}]\n", "a.csv"}));

@@ -49,7 +49,7 @@ INSTANTIATE_TEST_SUITE_P(Registry, EveryProcess, testing::ValuesIn(examples()), 
 TEST_P(EveryProcess, ExampleIsReadAndNamed) {
   const auto processes = processes_of(GetParam().text(), GetParam().sensor);
   ASSERT_FALSE(processes.empty());
-  for (const auto& process : processes) EXPECT_EQ(process->name(), GetParam().registration->name);
+  for (const auto& process : processes) EXPECT_EQ(process->share() ? "share" : process->name(), GetParam().registration->name);
   EXPECT_FALSE(GetParam().registration->help.empty());
 }
 

@@ -19,7 +19,7 @@ gyro:
         {process: share, of: left, weight: -0.25, own: {process: random_constant, sigma: 2, unit: deg/s}},
         {process: share, of: "the right one's", weight: 0.75, own: {process: white_noise, density: 0.4, unit: deg/s/sqrt(Hz)}},
         {process: share, of: "the right one's", weight: 0.75, own: {process: misalignment, sigma: 1, unit: mrad}}]
-accel: {all: [{process: white_noise, density: 1, unit: mg/sqrt(Hz)}]}
+accel: {all: [{process: white_noise, density: 1, unit: ug/sqrt(Hz)}]}
 )";
 
 ImuErrorModel shared_model() {
