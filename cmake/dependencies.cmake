@@ -12,6 +12,13 @@ find_package(TBB REQUIRED)
 find_package(ZLIB REQUIRED)
 find_package(Threads REQUIRED)
 
+# CHOLMOD of Debian 12 comes without files for CMake.
+find_library(CHOLMOD_LIBRARY cholmod REQUIRED)
+find_path(CHOLMOD_INCLUDE_DIR cholmod.h PATH_SUFFIXES suitesparse REQUIRED)
+add_library(coast_cholmod INTERFACE)
+target_include_directories(coast_cholmod SYSTEM INTERFACE ${CHOLMOD_INCLUDE_DIR})
+target_link_libraries(coast_cholmod INTERFACE ${CHOLMOD_LIBRARY})
+
 # FindGeographicLib gives variables; one imported target keeps its headers out of our warnings.
 add_library(coast_geographiclib INTERFACE)
 target_include_directories(coast_geographiclib SYSTEM INTERFACE ${GeographicLib_INCLUDE_DIRS})

@@ -26,12 +26,19 @@ struct Blocking {
   [[nodiscard]] std::size_t end(std::size_t block) const { return block + 1 == count ? samples : (block + 1) * length; }
 };
 
+/// Of one block; a sensor that is nowhere in it has no offset.
+struct BlockOffsets {
+  Eigen::VectorXd offset;
+  Eigen::Array<bool, Eigen::Dynamic, 1> present;
+};
+
 /// Offsets of the sensors about their mean in one block, by least squares: z_k[n] = common[n] + b_k, sum b_k = 0. Sensors come
 /// and go, so the mean of those that are there is corrected for whose bias it contains, until nothing moves.
-Eigen::VectorXd offsets_in_block(const Signals& signals, int channel, std::size_t from, std::size_t to) {
+BlockOffsets offsets_in_block(const Signals& signals, int channel, std::size_t from, std::size_t to) {
   constexpr int kSweeps = 6;
   const std::size_t sensors = signals.sensors.size();
-  Eigen::VectorXd offset = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(sensors));
+  BlockOffsets block{Eigen::VectorXd::Zero(static_cast<Eigen::Index>(sensors)), {}};
+  Eigen::VectorXd& offset = block.offset;
   for (int sweep = 0; sweep < kSweeps; ++sweep) {
     Eigen::VectorXd sum = Eigen::VectorXd::Zero(offset.size());
     Eigen::VectorXd count = Eigen::VectorXd::Zero(offset.size());
@@ -55,9 +62,26 @@ Eigen::VectorXd offsets_in_block(const Signals& signals, int channel, std::size_
     for (Eigen::Index k = 0; k < offset.size(); ++k)
       if (count(k) > 0.0) offset(k) = sum(k) / count(k);
     offset.array() -= offset.mean();
+    block.present = count.array() > 0.0;
     if ((offset - before).cwiseAbs().maxCoeff() <= 1e-12 * (1.0 + offset.cwiseAbs().maxCoeff())) break;
   }
-  return offset;
+  return block;
+}
+
+/// A sensor that is nowhere in a block has there what it had in a neighbouring one against those that are in this block: the
+/// level that all are brought to stays that of all sensors while one is out.
+void fill_from(const BlockOffsets& neighbour, BlockOffsets& block) {
+  if (block.present.all() || !block.present.any()) return;
+  const auto mean_of_present = [&](const Eigen::VectorXd& offset) {
+    return block.present.select(offset.array(), 0.0).sum() / static_cast<double>(block.present.count());
+  };
+  const double shift = mean_of_present(block.offset) - mean_of_present(neighbour.offset);
+  for (Eigen::Index k = 0; k < block.offset.size(); ++k)
+    if (!block.present(k) && neighbour.present(k)) {
+      block.offset(k) = neighbour.offset(k) + shift;
+      block.present(k) = true;
+    }
+  block.offset.array() -= block.offset.mean();
 }
 
 /// Straight lines between the middles of the blocks, constant before the first and after the last.
@@ -113,11 +137,15 @@ std::vector<Eigen::Matrix<double, kChannels, Eigen::Dynamic>> take_off_relative_
   std::vector<Eigen::Matrix<double, kChannels, Eigen::Dynamic>> offsets(sensors);
   for (auto& own : offsets) own.resize(kChannels, static_cast<Eigen::Index>(blocks.count));
   for (int c = 0; c < kChannels; ++c) {
+    std::vector<BlockOffsets> found;
     for (std::size_t b = 0; b < blocks.count; ++b) {
-      const Eigen::VectorXd offset = offsets_in_block(signals, c, blocks.first(b), blocks.end(b));
-      for (std::size_t k = 0; k < sensors; ++k)
-        offsets[k](c, static_cast<Eigen::Index>(b)) = offset(static_cast<Eigen::Index>(k));
+      found.push_back(offsets_in_block(signals, c, blocks.first(b), blocks.end(b)));
+      if (b > 0) fill_from(found[b - 1], found[b]);
     }
+    for (std::size_t b = blocks.count - 1; b-- > 0;) fill_from(found[b + 1], found[b]);
+    for (std::size_t b = 0; b < blocks.count; ++b)
+      for (std::size_t k = 0; k < sensors; ++k)
+        offsets[k](c, static_cast<Eigen::Index>(b)) = found[b].offset(static_cast<Eigen::Index>(k));
     for (std::size_t k = 0; k < sensors; ++k)
       for (std::size_t n = 0; n < signals.samples(); ++n)
         signals.sensors[k].values(c, static_cast<Eigen::Index>(n)) -=

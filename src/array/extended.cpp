@@ -77,7 +77,8 @@ noise::ImuErrorModel extended_error_model(const std::string& name, double rate_h
       for (const noise::ProcessPtr& process : sensors[k].model->axes(sensor_of(c))[static_cast<std::size_t>(own.axis)])
         axes.at(c < 3 ? 0 : 1)
             .at(static_cast<std::size_t>(c % 3))
-            .push_back(noise::make_share(process, sensors[k].name, weight * sign_of(*process, sensors[k], own, c % 3)));
+            .push_back(
+                noise::make_share(process, sensors[k].name, weight * sign_of(*process, sensors[k], own, c % 3), sensor_of(c)));
     }
   return noise::ImuErrorModel::of(name, rate_hz, std::move(axes[0]), std::move(axes[1]));
 }

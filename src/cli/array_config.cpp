@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 
+#include "coast/array/extended.hpp"
 #include "coast/geo/units.hpp"
 #include "coast/ins/mounting.hpp"
 #include "coast/io/yaml.hpp"
@@ -99,6 +100,9 @@ void read_imus(const Node& root, ArrayConfig& config) {
   for (const Node& item : list.items()) {
     config.imus.push_back(imu_from(item, config.time, config.imus.size()));
     const std::string& name = config.imus.back().name;
+    if (name.empty() || name.find_first_of(",;\t\"") != std::string::npos || name.front() == ' ' || name.back() == ' ')
+      throw item.at("name").error("'" + name + "'",
+                                  "a name without commas, semicolons, tabs and double quotes: it stands in tables");
     if (std::ranges::count(config.imus, name, &ArrayImu::name) > 1) throw item.error(name, "a name of its own for each IMU");
   }
   if (config.imus.size() < 2) throw list.error(fmt::format("{} IMUs", config.imus.size()), "two or more");
@@ -136,15 +140,26 @@ void read_orders(const Node& merge, array::MergeOptions& options) {
     options.orders = arma_garch_orders(*orders);
 }
 
+void check_models(const Node& method, const ArrayConfig& config) {
+  std::vector<array::ModelledSensor> sensors;
+  for (const ArrayImu& imu : config.imus) {
+    if (!imu.model)
+      throw method.error(fmt::format("extended, and no error_model of {}", imu.name),
+                         "`error_model` of every IMU: its own error states are made of it");
+    sensors.push_back({imu.name, &*imu.model, imu.frame.C_s_b});
+  }
+  try {
+    static_cast<void>(array::extended_error_model("", 1.0, sensors));
+  } catch (const std::invalid_argument& error) {
+    throw method.error(error.what(), "IMUs that can have error states of their own", "`corrected` and `weighted` take any.");
+  }
+}
+
 void read_merge(const Node& root, ArrayConfig& config) {
   const Node merge = root.section("merge");
   const std::vector<std::string_view> names(kMerges.begin(), kMerges.end());
   config.merge.merge = static_cast<array::Merge>(merge.choice("method", names, 1));
-  if (config.merge.merge == array::Merge::kExtended)
-    for (const ArrayImu& imu : config.imus)
-      if (!imu.model)
-        throw merge.at("method").error(fmt::format("extended, and no error_model of {}", imu.name),
-                                       "`error_model` of every IMU: its own error states are made of it");
+  if (config.merge.merge == array::Merge::kExtended) check_models(merge.at("method"), config);
   read_orders(merge, config.merge);
   config.merge.window_s = merge.number_within("window_s", config.merge.window_s, 0.1, 1e5);
   config.assembly.offset_window_s = merge.number_within("offset_window_s", config.assembly.offset_window_s, 1.0, 1e6);

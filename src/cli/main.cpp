@@ -45,7 +45,8 @@ void add_calibrate(CLI::App& app, std::filesystem::path& input, CommonOptions& c
 }
 
 void add_synth(CLI::App& app, std::filesystem::path& input, CommonOptions& common) {
-  auto* synth = subcommand(app, "synth", "several IMUs -> one synthetic IMU: mean, weighted, garch or corrected", "", common);
+  auto* synth =
+      subcommand(app, "synth", "several IMUs -> one synthetic IMU: mean, weighted, garch, corrected or extended", "", common);
   synth->add_option("array", input, "array.yaml, or study.yaml")->required();
   synth->footer(fmt::format(
       "Example:\n  coast synth array.yaml --out synthetic\n\narray.yaml:\n{}\n\nstudy.yaml, simulated arrays with known "

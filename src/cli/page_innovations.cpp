@@ -196,6 +196,7 @@ report::Panel update_panel(const ProcessPage& page) {
   add("zero velocity", report::Tone::kSbas, false, times_of(UpdateKind::kZeroVelocity, true));
   add("GNSS velocity", report::Tone::kPpp, false, times_of(UpdateKind::kGnssVelocity, true));
   add("GNSS position", report::Tone::kFixed, false, times_of(UpdateKind::kGnssPosition, true));
+  add("members refused", report::Tone::kWarn, true, times_of(UpdateKind::kMemberDifference, false));
   add("members of the IMU", report::Tone::kMuted, false, times_of(UpdateKind::kMemberDifference, true));
   add("carrier phases", report::Tone::kFixed, false, times_of(UpdateKind::kCarrierPhase, true));
   plot.height_px = 70 + 26 * static_cast<int>(plot.y.ticks.size());

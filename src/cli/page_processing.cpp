@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <array>
+
 #include "coast/geo/units.hpp"
 #include "page_parts.hpp"
 
@@ -16,7 +18,12 @@ report::Table settings_table(const ProcessPage& page) {
   table.title = "Settings";
   table.columns = {{"setting", "", false}, {"value", "", false}};
   const auto add = [&](const std::string& name, const std::string& value) { table.rows.push_back(cells({name, value})); };
-  add("smoother", page.config.smooth ? "RTS (backward recursion)" : "none");
+  constexpr std::array kLosses{"squared loss", "Huber's loss", "Cauchy's loss", "Geman-McClure loss"};
+  if (const auto& batch = page.mission.setup().batch)
+    add("smoother", fmt::format("sparse batch, {}, scale {}", kLosses.at(static_cast<std::size_t>(batch->gnss.kind)),
+                                number(batch->gnss.scale)));
+  else
+    add("smoother", page.config.smooth ? "RTS (backward recursion)" : "none");
   add("passes of the filter",
       page.config.passes == 1 ? "1" : fmt::format("{}, carrying states and covariance", page.config.passes));
   add("states",

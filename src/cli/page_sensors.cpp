@@ -38,14 +38,17 @@ std::vector<std::string> units_of(const std::string& process, bool gyro) {
   return {"mg", "ug"};
 }
 
-/// "gyro_x misalignment" -> sensor, axis, process. Auxiliary states have no space in their names.
+/// "gyro_x misalignment" or "gyro_x misalignment of left" -> sensor, axis, process, whose. Auxiliary states have no space in
+/// their names.
 void add_sensor_track(const StateTrack& track, std::vector<Group>& groups) {
   const std::size_t space = track.name.find(' ');
   const std::string block = track.name.substr(0, space);
-  const std::string process = track.name.substr(space + 1);
+  const std::size_t of = track.name.find(" of ", space);
+  const std::string process = track.name.substr(space + 1, of == std::string::npos ? of : of - space - 1);
+  const std::string whose = of == std::string::npos ? "" : track.name.substr(of);
   const bool gyro = block.starts_with("gyro");
   const std::string axis = block.substr(block.size() - 1);
-  const std::string key = fmt::format("{} {}", gyro ? "gyro" : "accel", process);
+  const std::string key = fmt::format("{} {}{}", gyro ? "gyro" : "accel", process, whose);
   const bool misalignment = process == "misalignment";
   // A process that an axis has twice is a group of its own the second time; the two misalignments of an axis are one group.
   const auto same = [&](const Group& g) {
@@ -57,6 +60,7 @@ void add_sensor_track(const StateTrack& track, std::vector<Group>& groups) {
     const char* name = plain_name(process);
     std::string title = fmt::format("{} {}", gyro ? "Gyro" : "Accelerometer", name != nullptr ? name : process);
     if (earlier > 0) title += fmt::format(" {}", earlier + 1);
+    title += whose;
     groups.push_back({key, std::move(title), {}, {}, units_of(process, gyro)});
     group = std::prev(groups.end());
   }

@@ -153,6 +153,22 @@ void read_filter(const Node& filter, RunConfig& run) {
                                     "an odd number: forward, or forward, backward, forward, ...");
 }
 
+void read_smoother(const Node& root, RunConfig& run) {
+  const std::size_t smoother = root.choice("smoother", {"rts", "batch", "none"}, 0);
+  run.smooth = smoother != 2;
+  if (smoother != 1) return;
+  if (run.tight)
+    throw root.at("smoother")
+        .error("a batch of tightly coupled observations", "rts: ambiguities are filtered",
+               "Or positions: gnss: {coupling: loose, ppk: ..}.");
+  const Node robust = root.section("robust");
+  estimate::BatchOptions batch;
+  batch.gnss.kind =
+      static_cast<estimate::RobustLoss::Kind>(robust.choice("loss", {"squared", "huber", "cauchy", "geman_mcclure"}, 0));
+  batch.gnss.scale = robust.number_within("scale", batch.gnss.scale, 0.1, 100.0);
+  run.setup.batch = batch;
+}
+
 void read_imu(const Node& imu, RunConfig& run, estimate::NoiseFitChoice& choice) {
   run.imu = io::ImuFileOptions::from(imu);
   if (const auto levels = imu.find("noise_levels")) run.noise_levels = levels->path();
@@ -161,6 +177,8 @@ void read_imu(const Node& imu, RunConfig& run, estimate::NoiseFitChoice& choice)
   if (const auto members = imu.find("members")) {
     if (run.setup.model.members().empty())
       throw members->error("members, but no `process: share` in the error model", "the error model of `coast synth` with them");
+    if (run.noise_levels)
+      throw members->error("members and noise_levels", "one of them: the members' own noise is that of the error model");
     run.members = members->path();
   }
   run.setup.lever_arm_b = imu.at("lever_arm_m").vector3();
@@ -233,10 +251,7 @@ RunConfig read_run_config(const std::filesystem::path& file) {
   if (const auto filter = root.find("filter")) read_filter(*filter, run);
   read_vehicle(root, run.setup);
   read_outages(root, run);
-  const auto smoother = root.find("smoother");
-  if (smoother && smoother->text() == "batch")
-    throw smoother->error("smoother: batch", "rts or none", "The sparse batch smoother does not exist yet.");
-  run.smooth = root.choice("smoother", {"rts", "none"}, 0) == 0;
+  read_smoother(root, run);
   read_output(root, run);
   root.refuse_unasked();
   return run;

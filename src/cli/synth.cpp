@@ -19,8 +19,6 @@ namespace coast::cli {
 
 namespace {
 
-constexpr double kMemberBlock = 1.0;  // s: the members' errors change slowly
-
 record::ImuRecording read_tagged(const ArrayConfig& config, std::size_t k, std::optional<geo::GpsTime> near) {
   const ArrayImu& imu = config.imus[k];
   return io::read_imu(std::get<io::ImuFileOptions>(imu.file), near);
@@ -139,8 +137,7 @@ void write_results(const ArrayConfig& config, const SynthResult& result, const s
                  result.extended
                      ? result.extended->yaml()
                      : array::error_model_yaml(synthetic_name(config), 1.0 / result.assembly.signals.dt, result.remaining));
-  if (result.extended)
-    io::write_member_blocks(out / "members.csv", array::member_blocks(result.assembly.signals, kMemberBlock));
+  if (result.extended) io::write_member_blocks(out / "members.csv", array::member_blocks(result.assembly.signals));
   io::write_text(out / "synth.json", synth_json(config, result));
   io::write_text(out / "array.resolved.yaml", config.root.resolved_yaml());
   io::write_text(out / "report.json", report::to_json(page));

@@ -29,7 +29,7 @@ AuxiliaryStates with_slots(AuxiliaryStates auxiliary, const CarrierObservations*
 }
 
 void check_members(const record::MemberBlocks& recorded, const StateLayout& layout) {
-  if (recorded.names.empty()) return;
+  if (recorded.names.empty() || layout.members().empty()) return;  // a model of the sum alone leaves them aside
   std::vector<std::string> names;
   bool noisy = true;
   for (const StateLayout::Member& member : layout.members()) {

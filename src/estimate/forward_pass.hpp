@@ -5,17 +5,10 @@
 #include <vector>
 
 #include "coast/estimate/forward_filter.hpp"
-#include "coast/estimate/transition.hpp"
+#include "propagation.hpp"
 #include "tight_coupling.hpp"
 
 namespace coast::estimate {
-
-/// Instants closer than this are one: IMU and GNSS tags carry rounding of microseconds at best.
-inline constexpr double kTimeTolerance = 2e-6;
-
-/// Repeats the nominal trajectory from a knot to the next, at `end`: the states at IMU epochs on the way, and the one at `end`.
-[[nodiscard]] record::NavState repeat_nominal(const Mission& mission, const Knot& knot, geo::GpsTime end, Navigator& navigator,
-                                              std::vector<record::NavState>& epochs);
 
 class ForwardPass {
  public:
@@ -34,17 +27,15 @@ class ForwardPass {
   [[nodiscard]] geo::GpsTime gnss_time(std::size_t index) const;
   void take_gnss(std::size_t index);
   void carrier_updates(const carrier::DifferenceEpoch& epoch);
-  [[nodiscard]] double missing_share(double span) const;
-  void add_gap_noise();
-  void propagate(const ins::RawIncrement& raw);
-  void follow_noise_level();
-  void fold();
   void close_interval();
   void knot();
-  void gnss_updates(const record::GnssFix& fix);
+  void gnss_updates(std::size_t index);
   void vehicle_updates();
-  void member_updates(const record::MemberBlocks::Block& block);
-  void try_update(const Linearised& measurement, record::FixQuality quality);
+  [[nodiscard]] const std::vector<record::MemberBlocks::Block>& member_blocks() const;
+  void member_updates(std::size_t index);
+  void note_refused_members();
+  /// @return whether it was used; nothing where it does not apply
+  std::optional<bool> try_update(const Measurement& measurement, record::FixQuality quality = record::FixQuality::kUnknown);
   [[nodiscard]] bool gate_refuses(const Linearised& measurement, double nis);
   /// Of positions. @return whether the filter has refused for so long that it is wrong itself
   bool refuse();
@@ -62,25 +53,25 @@ class ForwardPass {
   double knot_interval_;
   std::array<double, 4> gate_;  ///< threshold of NIS by dof
 
-  Navigator navigator_;
-  TransitionAccumulator transition_;
+  Propagation propagation_;
   FilterState state_;                                    ///< valid at knots
   Eigen::Matrix3d C_n_e_ = Eigen::Matrix3d::Identity();  ///< at the last knot
   Knot knot_;                                            ///< the last one, waiting for its transition
   bool have_knot_ = false;
 
-  std::size_t next_sample_ = 0;
-  std::size_t noise_level_ = 0;  ///< of the recording, the one at hand
-  ins::RawIncrement remainder_;
+  SampleCursor cursor_;
   std::size_t next_fix_ = 0;
   std::size_t next_block_ = 0;  ///< of the members
+  struct MemberCount {
+    std::size_t met = 0;
+    std::size_t refused = 0;
+  };
+  std::vector<MemberCount> member_counts_;  ///< of the differences of each member
   std::optional<TightCoupling> tight_;
   geo::GpsTime last_constraint_;
   geo::GpsTime first_refused_;
   geo::GpsTime last_used_;  ///< position fix
   enum class GateState { kClosed, kRefusing, kOpen } gate_state_ = GateState::kClosed;
-  double missing_share_ = 0.0;  ///< of the sample at hand
-  double gap_ = 0.0;            ///< s of missing IMU since the last knot
   std::vector<record::NavState> buffer_;
   record::NavCovariance cov_at_start_;
   FilterResult result_;

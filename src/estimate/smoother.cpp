@@ -7,7 +7,7 @@
 
 #include "coast/geo/rotation.hpp"
 #include "coast/record/error.hpp"
-#include "forward_pass.hpp"
+#include "propagation.hpp"
 
 namespace coast::estimate {
 

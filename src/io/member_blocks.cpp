@@ -35,7 +35,7 @@ class BlockReader {
     const geo::GpsTime from = week_time(table_, week_, from_);
     const double span = table_.number(span_);
     if (!table_.finite()) throw table_.error("a value that is not a number", "numbers; a member without means has no row");
-    if (!(span > 0.0 && span < 1e5)) throw table_.error(fmt::format("a span of {} s", span), "a length above zero");
+    if (!(span >= 1e-3 && span <= 1e5)) throw table_.error(fmt::format("a span of {} s", span), "1e-3 to 1e5 s");
     if (members_.blocks.empty() || members_.blocks.back().from != from) begin_block(from, span);
     MemberBlocks::Block& block = members_.blocks.back();
     if (std::abs(block.to - from - span) > kSame) throw table_.error("another span in one block", "the same");

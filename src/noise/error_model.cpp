@@ -107,7 +107,7 @@ ImuErrorModel ImuErrorModel::with_white_noise_scaled(Sensor sensor, double facto
         const std::optional<Share> share = process->share();
         const double own = std::sqrt(density) / (share ? std::abs(share->weight) : 1.0);
         process = make_white_noise(own * factor, sensor);
-        if (share) process = make_share(process, share->member, share->weight);
+        if (share) process = make_share(process, share->member, share->weight, sensor);
       }
   return scaled;
 }

@@ -126,7 +126,6 @@ FilterInput merged_input(const ArrayOutagePlan& plan, const record::ImuRecording
 /// Every sensor with what is known of it, each with error states of its own: weighted by its white noise, biases kept, and the
 /// sensors' differences for the filter.
 FilterInput extended_input(const ArrayOutagePlan& plan, const record::ImuRecording& truth, const Signals& signals) {
-  constexpr double kBlock = 1.0;  // s, as `coast synth` has it
   std::vector<noise::ImuErrorModel> models;
   for (std::size_t k = 0; k < signals.sensors.size(); ++k) models.push_back(single_model(plan, truth.rate_hz, signals.dt, k));
   std::vector<array::ModelledSensor> sensors;
@@ -137,7 +136,7 @@ FilterInput extended_input(const ArrayOutagePlan& plan, const record::ImuRecordi
   for (std::size_t k = 0; k < sensors.size(); ++k)
     sum += weights.col(static_cast<Eigen::Index>(k)).asDiagonal() * signals.sensors[k].values;
   FilterInput input{recording_of(truth, sum), array::extended_error_model("extended", truth.rate_hz, sensors)};
-  input.imu.members = array::member_blocks(signals, kBlock);
+  input.imu.members = array::member_blocks(signals);
   return input;
 }
 

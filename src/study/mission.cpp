@@ -45,22 +45,29 @@ double largest(const noise::ImuErrorModel& model, noise::Sensor sensor) {
 }
 
 // A bias known in body axes becomes the state of the additive process with the largest prior on each axis, less what other
-// states are known to be; of a synthetic IMU, on each axis of every member, whose weights add up to one.
+// states are known to be. Of a synthetic IMU every member has such a state, and each takes what its prior and its weight say.
 void set_gyro_bias(const estimate::StateLayout& layout, Eigen::Vector3d bias_b, estimate::FilterState& state) {
+  using Block = estimate::StateLayout::SensorBlock;
   const std::size_t members = std::max<std::size_t>(1, layout.members().size());
-  std::vector<const estimate::StateLayout::SensorBlock*> widest(3 * members);
-  for (const auto& block : layout.sensors()) {
+  std::vector<std::vector<const Block*>> widest(3, std::vector<const Block*>(members, nullptr));
+  const auto prior = [&](const Block* block) { return state.P(block->offset, block->offset); };
+  for (const Block& block : layout.sensors()) {
     if (block.sensor != noise::Sensor::kGyro || block.signal_b) continue;
     bias_b -= block.output.dot(state.x.segment(block.offset, block.size)) * block.response_b;
     if (block.size != 1) continue;
     Eigen::Index axis = 0;
     block.response_b.cwiseAbs().maxCoeff(&axis);
-    auto& slot = widest[3 * block.member.value_or(0) + static_cast<std::size_t>(axis)];
-    if (slot == nullptr || state.P(block.offset, block.offset) > state.P(slot->offset, slot->offset)) slot = &block;
+    const Block*& slot = widest[static_cast<std::size_t>(axis)][block.member.value_or(0)];
+    if (slot == nullptr || prior(&block) > prior(slot)) slot = &block;
   }
-  for (const auto* block : widest)
-    if (block != nullptr && state.P(block->offset, block->offset) > 0.0)
-      state.x(block->offset) = (block->member ? block->own_output(0) : 1.0) * block->response_b.dot(bias_b);
+  for (const std::vector<const Block*>& axis : widest) {
+    double variance = 0.0;  // of the sum of the states' outputs
+    for (const Block* block : axis)
+      if (block != nullptr) variance += block->output(0) * block->output(0) * prior(block);
+    if (!(variance > 0.0)) continue;
+    for (const Block* block : axis)
+      if (block != nullptr) state.x(block->offset) = prior(block) * block->output(0) / variance * block->response_b.dot(bias_b);
+  }
 }
 
 }  // namespace
@@ -219,6 +226,8 @@ estimate::NoiseFit PreparedMission::fit(const estimate::NoiseFitChoice& choice, 
   record::ImuRecording imu;
   imu.source = imu_.source;
   imu.rate_hz = imu_.rate_hz;
+  imu.noise = imu_.noise;
+  imu.members = imu_.members;
   const geo::GpsTime end = start_.nav.t + longest_s;
   for (const record::ImuSample& s : imu_.samples)
     if (s.t <= end) imu.samples.push_back(s);
@@ -266,26 +275,68 @@ estimate::FilterState PreparedMission::run_backward(const estimate::FilterOption
   return at_start;
 }
 
+namespace {
+
+/// What the batch solution has to say beside its states.
+void note_batch(const estimate::BatchSolution& batch, const std::vector<estimate::KnotMeasurement>& measurements,
+                record::Events& events) {
+  constexpr double kDoubted = 0.5;
+  const auto end = batch.smoothed.back().nav.t;
+  long doubted = 0;
+  for (std::size_t i = 0; i < batch.weights.size(); ++i)
+    if (measurements[i].what.kind == estimate::UpdateKind::kGnssPosition && batch.weights[i] < kDoubted) ++doubted;
+  events.push_back(
+      {record::Event::Severity::kInfo, "batch",
+       fmt::format("batch solution after {} iterations; {} GNSS positions left out or at less than half their weight",
+                   batch.cost.size() - 1, doubted),
+       end, doubted});
+  if (!batch.converged)
+    events.push_back({record::Event::Severity::kWarning, "batch_not_converged",
+                      "the batch solution has not come to rest: do not trust it where it differs from `smoother: rts`", end,
+                      1});
+}
+
+std::vector<estimate::SmoothedKnot> smoothed(const PreparedMission& mission, const estimate::FilterOptions& options,
+                                             const estimate::FilterState& start,
+                                             const std::vector<estimate::KnotMeasurement>& measurements,
+                                             const SolutionOutputs& outputs, const Progress& progress, Solution& solution) {
+  const estimate::StateLayout& layout = solution.filter->layout();
+  if (!mission.setup().batch)
+    return estimate::smooth(solution.knots, layout, stage(progress, "smoothing backward"), outputs.states);
+  estimate::BatchSolution batch =
+      estimate::smooth_batch(mission.mission(), layout, options, start, solution.knots, measurements, *mission.setup().batch,
+                             stage(progress, "solving the batch"), outputs.states);
+  note_batch(batch, measurements, solution.forward.events);
+  return std::move(batch.smoothed);
+}
+
+}  // namespace
+
 Solution solve(const PreparedMission& mission, const estimate::FilterOptions& options, bool smooth,
                const SolutionOutputs& outputs, const Progress& progress, const std::optional<estimate::FilterState>& carried) {
   Solution solution;
   solution.filter = std::make_unique<estimate::ForwardFilter>(mission.mission(), mission.model(), options);
   const estimate::FilterState start = mission.start_state(*solution.filter);
+  std::vector<estimate::KnotMeasurement> measurements;
+  estimate::FilterOutputs for_smoother;
+  for_smoother.knots = &solution.knots;
+  if (mission.setup().batch)
+    for_smoother.measurements = [&](const estimate::Measurement& what, bool used) {
+      measurements.push_back({solution.knots.size(), what, used});
+    };
   estimate::FilterOutputs filter_outputs;
+  if (smooth && !carried) filter_outputs = for_smoother;
   filter_outputs.epochs = outputs.forward;
   filter_outputs.at_knots = outputs.at_knots;
   filter_outputs.progress = stage(progress, "filtering forward");
-  if (smooth && !carried) filter_outputs.knots = &solution.knots;
   solution.forward = solution.filter->run(carried.value_or(start), filter_outputs);
   if (!smooth) return solution;
+  const estimate::FilterState smoothed_start = carried ? estimate::FilterState{carried->nav, carried->x, start.P} : start;
   if (carried) {
-    estimate::FilterOutputs knots_alone;
-    knots_alone.knots = &solution.knots;
-    knots_alone.progress = stage(progress, "filtering forward for the smoother");
-    static_cast<void>(solution.filter->run({carried->nav, carried->x, start.P}, knots_alone));
+    for_smoother.progress = stage(progress, "filtering forward for the smoother");
+    static_cast<void>(solution.filter->run(smoothed_start, for_smoother));
   }
-  solution.smoothed =
-      estimate::smooth(solution.knots, solution.filter->layout(), stage(progress, "smoothing backward"), outputs.states);
+  solution.smoothed = smoothed(mission, options, smoothed_start, measurements, outputs, progress, solution);
   if (outputs.smoothed)
     estimate::emit_smoothed(mission.mission(), solution.filter->layout(), solution.knots, solution.smoothed, outputs.smoothed,
                             stage(progress, "writing the smoothed trajectory"));

@@ -104,6 +104,26 @@ TEST(Extended, OffsetsThatWereTakenOffComeBackWithTheWeights) {
   test::expect_near_matrix(sum, expected, 1e-12, "sum");
 }
 
+TEST(Extended, TheSumKeepsTheBiasOfASensorThatIsOut) {
+  Signals signals = random_array(3, 6000);
+  const Eigen::Vector3d bias(3.0, 0.0, 0.5);
+  for (Eigen::Index k = 0; k < 3; ++k) {
+    SensorSignals& sensor = signals.sensors[static_cast<std::size_t>(k)];
+    sensor.values = (1e-3 * sensor.values).array() + bias(k);
+  }
+  for (const std::size_t sensor : {0U, 2U})  // one in the middle, one from the beginning
+    for (std::size_t n = sensor == 0 ? 2000 : 0; n < (sensor == 0 ? 4500U : 1500U); ++n) signals.sensors[sensor].usable[n] = 0;
+  Signals levelled = signals;
+  static_cast<void>(take_off_relative_offsets(levelled, 2.0));
+  MergeOptions options{.merge = Merge::kExtended};
+  options.weights = Eigen::MatrixXd(kChannels, 3);
+  options.weights.rowwise() = Eigen::RowVector3d(0.5, 0.3, 0.2);
+  const Eigen::VectorXd sum =
+      with_offsets(signals, levelled, 0, merge_channel(levelled, 0, options).value, options.weights.row(0).transpose());
+  // 1e-3 of noise, of which a block's offset has the 14th part.
+  EXPECT_LE((sum.array() - 1.6).abs().maxCoeff(), 6e-3);
+}
+
 TEST(Extended, BlocksAreMeansOfWhatMayBeUsedAllAlong) {
   Signals signals = random_array(2, 250);
   signals.sensors[1].usable[120] = 0x1F;  // one channel of one sample

@@ -103,6 +103,30 @@ TEST(Commands, ProcessesWhatSimulateWroteAndRepeatsItFromTheResolvedFile) {
   EXPECT_GT(fs::file_size(out / "report.html"), 100000U);
 }
 
+TEST(Commands, BatchIsAsGoodAsTheSmootherAndSaysWhatItDoubts) {
+  const test::TemporaryDirectory folder;
+  const auto solve = [&](const std::string& name, const std::string& keys) {
+    const fs::path file = recording() / (name + ".yaml");
+    write(file, text_of(recording() / "run.yaml") + keys);
+    test::expect_valid("run", test::load_yaml_as_json(file));
+    const Outcome outcome =
+        run(fmt::format("process '{}' --out '{}'", file.string(), (folder.path() / name).string()), folder.path());
+    EXPECT_EQ(outcome.status, 0) << outcome.error;
+    return nlohmann::json::parse(text_of(folder.path() / name / "summary.json"));
+  };
+  const auto rts = solve("rts", "");
+  const auto batch = solve("batch", "smoother: batch\nrobust: {loss: cauchy, scale: 3}\n");
+  test::expect_valid("summary", batch);
+  for (std::size_t i = 0; i < 3; ++i) {
+    const double of_rts = rts["reference"]["smoothed"]["position_rms_m"][i].get<double>();
+    EXPECT_LT(batch["reference"]["smoothed"]["position_rms_m"][i].get<double>(), 1.1 * of_rts + 1e-3) << i;
+  }
+  const auto& events = batch["events"];
+  EXPECT_TRUE(std::any_of(events.begin(), events.end(), [](const nlohmann::json& event) { return event["kind"] == "batch"; }));
+  EXPECT_TRUE(std::none_of(events.begin(), events.end(),
+                           [](const nlohmann::json& event) { return event["kind"] == "batch_not_converged"; }));
+}
+
 TEST(Commands, ThreePassesRepeatFromTheResolvedFileAndKeepTheSweepBlind) {
   const test::TemporaryDirectory folder;
   std::string text = text_of(recording() / "run.yaml");
@@ -164,7 +188,7 @@ INSTANTIATE_TEST_SUITE_P(
                     Spoiled{"a word for a number", "gps_week: 2374", "gps_week: soon", "soon"},
                     Spoiled{"two of three numbers", "mounting_deg: [0, 0, 0]", "mounting_deg: [0, 0]", "mounting_deg"},
                     Spoiled{"left-handed axes", "axes: [x, y, z]", "axes: [x, y, -z]", "axes"},
-                    Spoiled{"batch", "reference:", "smoother: batch\nreference:", "batch"},
+                    Spoiled{"smoother", "reference:", "smoother: best\nreference:", "batch"},
                     Spoiled{"a forward pass too few", "reference:", "filter: {passes: 2}\nreference:", "passes"},
                     Spoiled{"a vehicle that does not exist", "reference:", "vehicle: tram\nreference:", "tram"},
                     Spoiled{"an outage without end", "duration_s: 20", "duration_s: 0", "duration_s"},

@@ -19,6 +19,8 @@ namespace {
 using namespace estimate;
 using record::MemberBlocks;
 
+constexpr double kSignalVariance = 1e-6;  // (rad/s)^2
+
 constexpr const char* kGoodMember = R"(schema: coast.imu_error_model/1
 gyro:
   all: [{process: white_noise, density: 0.1, unit: deg/sqrt(h)}, {process: random_constant, sigma: 30, unit: deg/h},
@@ -34,60 +36,103 @@ accel:
         {process: gauss_markov, sigma: 0.5, unit: mg, correlation_time_s: 50}]
 )";
 
+constexpr const char* kPlainMember = R"(schema: coast.imu_error_model/1
+gyro:
+  all: [{process: white_noise, density: 0.15, unit: deg/sqrt(h)}, {process: random_constant, sigma: 40, unit: deg/h}]
+accel:
+  all: [{process: white_noise, density: 60, unit: ug/sqrt(Hz)}, {process: random_constant, sigma: 3, unit: mg}]
+)";
+
 struct Members {
-  std::vector<noise::ImuErrorModel> models{test::error_model(kGoodMember), test::error_model(kPoorMember),
-                                           test::error_model(kGoodMember)};
-  std::vector<array::ModelledSensor> sensors{{"a", &models[0]}, {"b", &models[1]}, {"c", &models[2]}};
-  Eigen::MatrixXd weights = array::extended_weights(sensors);
-  noise::ImuErrorModel sum = array::extended_error_model("sum", 100.0, sensors);
+  explicit Members(const std::vector<const char*>& texts = {kGoodMember, kPoorMember, kGoodMember}) {
+    for (const char* text : texts) models.push_back(test::error_model(text));
+    for (std::size_t k = 0; k < models.size(); ++k) sensors.push_back({std::string(1, "abc"[k]), &models[k]});
+    sensors.back().C_s_b = Eigen::Vector3d(1.0, -1.0, -1.0).asDiagonal();  // mounted upside down
+    weights = array::extended_weights(sensors);
+    sum = array::extended_error_model("sum", 100.0, sensors);
+  }
+  Members(const Members&) = delete;
+  Members& operator=(const Members&) = delete;
+
+  std::vector<noise::ImuErrorModel> models;
+  std::vector<array::ModelledSensor> sensors;
+  Eigen::MatrixXd weights;
+  noise::ImuErrorModel sum;
 };
 
 /// What a member's states add to the mean of each axis of a block.
-Eigen::MatrixXd design_of(const StateLayout& layout, std::size_t member, noise::Sensor sensor, const Eigen::Vector3d& signal) {
+Eigen::MatrixXd design_of(const Members& members, const StateLayout& layout, std::size_t member,
+                          const Eigen::Vector3d& signal) {
   Eigen::MatrixXd H = Eigen::MatrixXd::Zero(3, layout.size());
   for (const auto& block : layout.sensors())
-    if (block.member == member && block.sensor == sensor)
-      H(block.axis, block.offset) = block.signal_axis ? signal(*block.signal_axis) : 1.0;
+    if (block.member == member && block.sensor == noise::Sensor::kGyro)
+      H(block.axis, block.offset) =
+          block.signal_axis ? signal(*block.signal_axis) : members.sensors[member].C_s_b(block.axis, block.axis);
   return H;
 }
 
-// The dense solution: every member's mean is the true signal, of which nothing is known, plus its errors plus its noise.
-void expect_as_dense(const Members& members, const MemberBlocks::Block& block) {
-  const StateLayout layout(members.sum, Eigen::Matrix3d::Identity(), {});
+FilterState some_state(const StateLayout& layout) {
   std::mt19937_64 random(4);
   FilterState state;
   state.nav.r_eb_e = {4.3e6, 5e5, 4.6e6};
   state.x = Eigen::VectorXd::Zero(layout.size());
   state.x.tail(layout.size() - kNav) = 1e-3 * test::normal_vector(layout.size() - kNav, random);
   state.P = 1e-6 * test::random_covariance(layout.size(), random);
-  const noise::Sensor sensor = noise::Sensor::kGyro;
+  return state;
+}
 
+/// Information of a member's mean over a block.
+double information_of(const Members& members, const MemberBlocks::Block& block, std::size_t member) {
+  return (block.to - block.from) / members.models[member].white_density(noise::Sensor::kGyro, 0).value;
+}
+
+/// The sum of those that may be used, of a true signal that is known to kSignalVariance about zero.
+Linearised measured_sum(const Members& members, const StateLayout& layout, const MemberBlocks::Block& block,
+                        const FilterState& state) {
+  Linearised sum{UpdateKind::kMemberDifference, Eigen::Vector3d::Zero(), Eigen::MatrixXd::Zero(3, layout.size()), {}};
+  double information = 0.0;
+  for (std::size_t k = 0; k < block.means.size(); ++k) {
+    if (!block.means[k]) continue;
+    const double own = information_of(members, block, k);
+    information += own;
+    sum.nu += own * block.means[k]->gyro;
+    sum.H += own * design_of(members, layout, k, Eigen::Vector3d::Zero());
+  }
+  sum.H /= information;
+  sum.nu = sum.nu / information - sum.H * state.x;
+  sum.R = (1.0 / information + kSignalVariance) * Eigen::Matrix3d::Identity();
+  return sum;
+}
+
+// The dense solution: every member's mean is the true signal, plus its errors, plus its noise. Differences and sum together
+// must say the same.
+void expect_as_dense(const Members& members, const MemberBlocks::Block& block) {
+  const StateLayout layout(members.sum, Eigen::Matrix3d::Identity(), {});
+  FilterState state = some_state(layout);
   const int unknowns = layout.size() + 3;  // and the true signal
   Eigen::MatrixXd information = Eigen::MatrixXd::Zero(unknowns, unknowns);
   information.topLeftCorner(layout.size(), layout.size()) = state.P.inverse();
+  information.bottomRightCorner<3, 3>().diagonal().setConstant(1.0 / kSignalVariance);
   Eigen::VectorXd right = Eigen::VectorXd::Zero(unknowns);
   right.head(layout.size()) = information.topLeftCorner(layout.size(), layout.size()) * state.x;
   for (std::size_t k = 0; k < block.means.size(); ++k) {
     if (!block.means[k]) continue;
     Eigen::MatrixXd A(3, unknowns);
-    A << design_of(layout, k, sensor, Eigen::Vector3d::Zero()), Eigen::Matrix3d::Identity();
-    const double seconds = block.to - block.from;
-    for (int axis = 0; axis < 3; ++axis) {
-      const double weight = seconds / members.models[k].white_density(sensor, axis).value;
-      information += weight * A.row(axis).transpose() * A.row(axis);
-      right += weight * A.row(axis).transpose() * block.means[k]->gyro(axis);
-    }
+    A << design_of(members, layout, k, Eigen::Vector3d::Zero()), Eigen::Matrix3d::Identity();
+    information += information_of(members, block, k) * A.transpose() * A;
+    right += information_of(members, block, k) * A.transpose() * block.means[k]->gyro;
   }
   const Eigen::MatrixXd covariance = information.inverse();
   const Eigen::VectorXd expected = covariance * right;
 
   for (std::size_t j = 1; j < block.means.size(); ++j)
-    if (const auto difference = member_difference(state, layout, block, sensor, j))
+    if (const auto difference = member_difference(state, layout, block, noise::Sensor::kGyro, j))
       (void)apply(*difference, innovation(state, *difference), state);
-  // Of the states that nothing but the differences touches.
+  const Linearised sum = measured_sum(members, layout, block, state);
+  (void)apply(sum, innovation(state, sum), state);
   const int sensors = layout.size() - kNav;
-  test::expect_near_matrix(state.x.tail(sensors), expected.segment(kNav, sensors), 1e-9, "x");
-  test::expect_near_matrix(state.P.bottomRightCorner(sensors, sensors), covariance.block(kNav, kNav, sensors, sensors), 1e-13,
+  test::expect_near_matrix(state.x.tail(sensors), expected.segment(kNav, sensors), 1e-8, "x");
+  test::expect_near_matrix(state.P.bottomRightCorner(sensors, sensors), covariance.block(kNav, kNav, sensors, sensors), 1e-10,
                            "P");
 }
 
@@ -100,11 +145,8 @@ MemberBlocks::Block a_block() {
   return block;
 }
 
-TEST(MemberDifference, DifferencesOneAfterTheOtherAreAllMembersAtOnce) {
-  Members members;
-  for (auto& model : members.models) model = test::error_model(kPoorMember);
-  members.weights = array::extended_weights(members.sensors);
-  members.sum = array::extended_error_model("sum", 100.0, members.sensors);
+TEST(MemberDifference, WithTheSumDifferencesSayWhatAllMembersSayAtOnce) {
+  const Members members({kPlainMember, kPoorMember, kPoorMember});
   expect_as_dense(members, a_block());
   for (std::size_t missing = 0; missing < 3; ++missing) {
     MemberBlocks::Block block = a_block();
@@ -121,18 +163,25 @@ TEST(MemberDifference, DesignIsThatOfTheMembersErrorsWithTheirScaleFactors) {
   state.x = Eigen::VectorXd::Zero(layout.size());
   state.P = Eigen::MatrixXd::Identity(layout.size(), layout.size());
   MemberBlocks::Block block = a_block();
-  for (auto& means : block.means) means->gyro = {0.3, -0.2, 0.5};
+  const Eigen::Vector3d signal(0.3, -0.2, 0.5);
+  for (auto& means : block.means) means->gyro = signal;
   const auto at_zero = member_difference(state, layout, block, noise::Sensor::kGyro, 2);
   EXPECT_LE(at_zero->nu.norm(), 1e-15);
   // The share of a and b in their mean is 9 : 1, c is told from it.
-  const Eigen::Vector3d signal(0.3, -0.2, 0.5);
-  const Eigen::MatrixXd expected = design_of(layout, 2, noise::Sensor::kGyro, signal) -
-                                   0.9 * design_of(layout, 0, noise::Sensor::kGyro, signal) -
-                                   0.1 * design_of(layout, 1, noise::Sensor::kGyro, signal);
+  const Eigen::MatrixXd expected = design_of(members, layout, 2, signal) - 0.9 * design_of(members, layout, 0, signal) -
+                                   0.1 * design_of(members, layout, 1, signal);
   test::expect_near_matrix(at_zero->H, expected, 1e-12, "H");
   state.x.tail(layout.size() - kNav) = test::normal_vector(layout.size() - kNav, random);
   const auto shifted = member_difference(state, layout, block, noise::Sensor::kGyro, 2);
   test::expect_near_matrix(shifted->nu, -expected * state.x, 1e-12, "nu");
+}
+
+record::ImuRecording turned(record::ImuRecording imu, const Eigen::Matrix3d& C) {
+  for (record::ImuSample& sample : imu.samples) {
+    sample.dtheta = C * sample.dtheta;
+    sample.dv = C * sample.dv;
+  }
+  return imu;
 }
 
 /// Three IMUs on one drive: their sum as a recording, and their block means.
@@ -142,7 +191,9 @@ test::Recording member_recording(const Members& members, double duration, std::u
   test::Recording recording = test::make_recording(options, nullptr, seed);
   array::Signals signals{recording.imu.samples.front().t - recording.imu.samples.front().dt, 0.01, {}};
   for (std::size_t k = 0; k < members.models.size(); ++k) {
-    const record::ImuRecording own = simulate::with_errors(recording.imu, members.models[k], 100 * seed + k);
+    const Eigen::Matrix3d& C_s_b = members.sensors[k].C_s_b;
+    const record::ImuRecording own =
+        turned(simulate::with_errors(turned(recording.imu, C_s_b.transpose()), members.models[k], 100 * seed + k), C_s_b);
     array::SensorSignals& sensor = signals.sensors.emplace_back();
     sensor.name = members.sensors[k].name;
     sensor.usable.assign(own.samples.size(), array::kAllUsable);
@@ -198,6 +249,33 @@ TEST(MemberDifference, InnovationsAreConsistentForwardAndBackward) {
     const FilterState far = test::drawn_start(backward, ins::reversed(recording.truth(end), end), {}, random);
     expect_white(backward.run(far, {}), 120U * 2U * 2U);
   }
+}
+
+TEST(MemberDifference, ARunGoesOnFromAKnotWithEachBlockOnce) {
+  const Members members;
+  const test::Recording recording = member_recording(members, 20.0, 5);
+  const ForwardFilter filter(recording.mission(), members.sum, {});
+  std::mt19937_64 random(5);
+  KnotStore knots;
+  FilterOutputs outputs;
+  outputs.knots = &knots;
+  const FilterResult whole = filter.run(test::drawn_start(filter, recording.truth(test::mission_start()), {}, random), outputs);
+  for (const std::size_t at : {knots.size() / 3, knots.size() / 2}) {
+    const FilterResult rest = filter.resume(knots.at(at), recording.imu.samples.back().t, {});
+    test::expect_near_matrix(rest.last.x, whole.last.x, 1e-7, "x");
+    test::expect_near_matrix(rest.last.P, whole.last.P, 1e-7, "P");
+  }
+}
+
+TEST(MemberDifference, AMemberUnlikeItsModelIsReported) {
+  const Members members;
+  test::Recording recording = member_recording(members, 60.0, 6);
+  for (MemberBlocks::Block& block : recording.imu.members.blocks) block.means[1]->gyro.x() += 0.1;
+  const ForwardFilter filter(recording.mission(), members.sum, {});
+  std::mt19937_64 random(6);
+  const FilterResult result = filter.run(test::drawn_start(filter, recording.truth(test::mission_start()), {}, random), {});
+  ASSERT_EQ(result.events.size(), 1U);  // of b alone: c is not compared with it
+  EXPECT_NE(result.events.back().text.find("differences of b"), std::string::npos) << result.events.back().text;
 }
 
 TEST(MemberDifference, MembersThatTheModelDoesNotKnowAreRefused) {

@@ -61,6 +61,7 @@ TEST(MemberBlocks, SpoiledFilesAreRefusedWithTheirLine) {
   refused(row("100", "1", "left") + row("100.5", "1", "left"), "in order");
   refused(row("100", "1", "top"), "left, right");
   refused(row("100", "-1", "left"), "span");
+  refused(row("100", "1e-10", "left"), "1e-3");
   refused(row("100", "nan", "left"), "not a number");
   refused(row("nan", "1", "left"), "not a time");
 }

@@ -1,7 +1,8 @@
 #pragma once
 // The extended mechanisation: one strapdown integrates the weighted sum of all sensors, and every sensor keeps its own error
 // states, which the sensors' differences tie to each other. Beyond Stebler et al. (2011), who merge first and know one error
-// of the sum; with equal or constant weights it is the optimal filter of all sensors' signals.
+// of the sum; where their errors are slow, sum and differences
+// together hold all that the sensors say.
 
 #include <span>
 #include <string>
@@ -18,7 +19,8 @@ struct ModelledSensor {
   const noise::ImuErrorModel* model = nullptr;
   Eigen::Matrix3d C_s_b = Eigen::Matrix3d::Identity();  ///< its axes lie along the body's to `kMostTilt`
 };
-inline constexpr double kMostTilt = 0.2;  ///< rad: an error on one axis is held to act on one axis of the body
+inline constexpr double kMemberBlock = 1.0;  ///< s
+inline constexpr double kMostTilt = 0.2;     ///< rad: an error on one axis is held to act on one axis of the body
 
 /// Weights of the sum in each channel by the inverse of the sensors' white noise: 6 x K, rows add up to 1. With these, and only
 /// these, the noise of the sum is independent of all differences.
@@ -36,7 +38,9 @@ inline constexpr double kMostTilt = 0.2;  ///< rad: an error on one axis is held
                                            const Eigen::VectorXd& levelled_sum,
                                            const Eigen::Ref<const Eigen::VectorXd>& weights);
 
-/// Means of every sensor over blocks of about `block_s`; of one that may be used in all channels of the whole block.
-[[nodiscard]] record::MemberBlocks member_blocks(const Signals& signals, double block_s);
+/// Means of every sensor over blocks of `kMemberBlock`, of one that may be used in all channels of the whole block. A filter
+/// takes them for what the errors are in the middle.
+/// @param block_s  short against the shortest correlation time of the sensors' processes
+[[nodiscard]] record::MemberBlocks member_blocks(const Signals& signals, double block_s = kMemberBlock);
 
 }  // namespace coast::array

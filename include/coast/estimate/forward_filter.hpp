@@ -74,7 +74,7 @@ struct FilterOptions {
 };
 
 /// One innovation, resolved for people: GNSS in N, E, D; non-holonomic as lateral, vertical in the first two; of carrier phases
-/// what they move the antenna by.
+/// what they move the antenna by; of a member's difference its axes.
 struct InnovationRecord {
   geo::GpsTime t;
   UpdateKind kind = UpdateKind::kGnssPosition;
@@ -85,6 +85,15 @@ struct InnovationRecord {
   double nis = 0.0;
   double largest_sd = 0.0;  ///< square root of the largest eigenvalue of S: what the gate can see
   record::FixQuality quality = record::FixQuality::kUnknown;
+};
+
+/// Which measurement of a mission: what is needed to linearise it again.
+struct Measurement {
+  UpdateKind kind = UpdateKind::kGnssPosition;
+  std::size_t index = 0;                        ///< of the fix, or of the members' block
+  noise::Sensor sensor = noise::Sensor::kGyro;  ///< of a member's difference
+  std::size_t member = 0;                       ///< likewise
+  std::vector<std::size_t> left_out = {};       ///< likewise: members refused in this block
 };
 
 struct FilterResult {
@@ -99,12 +108,15 @@ struct FilterOutputs {
   KnotStore* knots = nullptr;
   record::EpochSink epochs;                          ///< filtered state at IMU epochs
   std::function<void(const FilterState&)> at_knots;  ///< before the knot's updates
-  std::function<void(double)> progress;              ///< fraction done
+  /// Every measurement, and whether it was used, at the knot that comes next. Not of carrier phases.
+  std::function<void(const Measurement&, bool)> measurements;
+  std::function<void(double)> progress;  ///< fraction done
 };
 
 class ForwardFilter {
  public:
   /// @throws std::invalid_argument  an option is out of its range
+  /// @throws InputError  members that are not those of the error model, or without white noise in it
   ForwardFilter(const Mission& mission, const noise::ImuErrorModel& model, const FilterOptions& options);
 
   [[nodiscard]] const StateLayout& layout() const { return layout_; }

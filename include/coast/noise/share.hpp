@@ -11,6 +11,6 @@ namespace coast::noise {
 /// multiplied with the weight. What the member rounds the sum does not round: it counts as the white noise that a filter takes
 /// it for.
 /// @param weight  up to 1; below 0 where the member's axis points against that of the sum
-[[nodiscard]] ProcessPtr make_share(ProcessPtr own, const std::string& member, double weight);
+[[nodiscard]] ProcessPtr make_share(ProcessPtr own, const std::string& member, double weight, Sensor sensor);
 
 }  // namespace coast::noise

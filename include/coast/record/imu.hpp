@@ -26,7 +26,7 @@ struct NoiseLevel {
 };
 
 /// Where a recording is the weighted sum of several IMUs, its members: what each of them measured by itself, in means over
-/// blocks, in the axes of the recording.
+/// blocks, in the sensor's axes, in which the error model's shares are (a recording may have been turned to body axes since).
 struct MemberBlocks {
   struct Means {
     Eigen::Vector3d gyro;   ///< rad/s

@@ -6,6 +6,7 @@
 #include <optional>
 #include <vector>
 
+#include "coast/estimate/batch_smoother.hpp"
 #include "coast/estimate/forward_filter.hpp"
 #include "coast/estimate/noise_fit.hpp"
 #include "coast/estimate/smoother.hpp"
@@ -29,6 +30,8 @@ struct Setup {
   /// Where the first studied outage begins: the start is refined with fixes before it alone, or the outage would look too good.
   std::optional<geo::GpsTime> refine_before;
   std::optional<estimate::NoiseFitChoice> noise_fit;
+  /// The delivered solution is smoothed as a batch; outages that are swept and starts that are refined are not.
+  std::optional<estimate::BatchOptions> batch;
   /// Tight coupling, of the prepared mission alone: it is prepared with the fixes.
   std::shared_ptr<const estimate::CarrierObservations> carrier;
 };

@@ -53,7 +53,7 @@ class WeightedMean {
 
 // z = mean_j - weighted mean of those before j = (e_j + n_j) - sum_i share_i (e_i + n_i), e = H x. Shares go by 1/N_i, the
 // inverse of the white noise; a sum with such weights has the same covariance with each of its parts, so a difference is
-// uncorrelated with the mean it is taken from, with every difference before it, and with the sum of all that the strapdown
+// uncorrelated with the mean in which j has come in, with every other difference, and with the sum of all that the strapdown
 // integrates.
 std::optional<Linearised> member_difference(const FilterState& state, const StateLayout& layout,
                                             const record::MemberBlocks::Block& block, noise::Sensor sensor, std::size_t j) {

@@ -67,13 +67,15 @@ std::vector<ProcessPtr> make_shared(const config::Node& entry, const EntryContex
   if (own.at("process").text() == "share") throw own.error("a share of a share", "a process of the member itself");
   std::vector<ProcessPtr> processes;
   for (ProcessPtr& process : make_processes(own, context))
-    processes.push_back(make_share(std::move(process), member, weight.number()));
+    processes.push_back(make_share(std::move(process), member, weight.number(), context.sensor));
   return processes;
 }
 
 }  // namespace
 
-ProcessPtr make_share(ProcessPtr own, const std::string& member, double weight) {
+ProcessPtr make_share(ProcessPtr own, const std::string& member, double weight, Sensor sensor) {
+  if (own->rounding() && own->white_density().value > 0.0)  // the sum does not round, and has another rate
+    own = make_white_noise(std::sqrt(own->white_density().value), sensor);
   return std::make_shared<SharedProcess>(std::move(own), member, weight);
 }
 

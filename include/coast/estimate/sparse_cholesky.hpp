@@ -1,0 +1,75 @@
+#pragma once
+// Sparse symmetric positive definite systems: solution, log determinant, and those elements of the inverse that are cheap.
+
+#include <Eigen/Core>
+#include <Eigen/SparseCore>
+#include <cstddef>
+#include <memory>
+#include <span>
+
+namespace coast::estimate {
+
+/// Elements of the inverse of a symmetric positive definite matrix on the pattern of its Cholesky factor, which holds that of
+/// the matrix itself: whatever two unknowns the matrix ties to each other, their covariance is here.
+class SelectedInverse {
+ public:
+  /// Element (i, j) = (j, i), found by bisection.
+  /// @throws std::out_of_range  (i, j) is not in the pattern
+  [[nodiscard]] double operator()(Eigen::Index i, Eigen::Index j) const;
+
+  /// The symmetric block of these rows and columns, in their order.
+  /// @throws std::out_of_range  one of its elements is not in the pattern
+  [[nodiscard]] Eigen::MatrixXd block(std::span<const Eigen::Index> rows) const;
+
+ private:
+  friend class SparseCholesky;
+  SelectedInverse() = default;
+
+  Eigen::SparseMatrix<double> lower_;  // in elimination order, laid out as the factor
+  Eigen::VectorXi position_;           // of every row in that order
+};
+
+/// P A P' = L L' of a sparse symmetric positive definite A, by CHOLMOD (Chen, Davis, Hager & Rajamanickam 2008, ACM TOMS
+/// 35:22). Element by element (simplicial), never in dense blocks: no BLAS is called, and the numbers do not change with the
+/// one that is installed.
+/// @note  Const, but CHOLMOD's workspace is shared: an object belongs to one thread at a time. A moved-from one can only be
+///        destroyed or assigned to.
+class SparseCholesky {
+ public:
+  /// Chooses the elimination order P, natural or approximate minimum degree, whichever fills L less (natural if equal: a chain
+  /// of links with the border last then stays as it is), and analyses L once for all factorizations.
+  /// @param lower  lower triangle, compressed; of its values none is looked at, of an upper triangle nothing at all
+  /// @throws std::invalid_argument  not square, not compressed
+  explicit SparseCholesky(const Eigen::SparseMatrix<double>& lower);
+  ~SparseCholesky();
+  SparseCholesky(SparseCholesky&&) noexcept;
+  SparseCholesky& operator=(SparseCholesky&&) noexcept;
+
+  /// @param lower  the pattern of the constructor, stored zeros included
+  /// @throws NumericalError  not positive definite, or not finite; names the column at which elimination ended. There is no
+  ///                         factor then.
+  /// @throws std::invalid_argument  another pattern
+  void factorize(const Eigen::SparseMatrix<double>& lower);
+
+  /// A^-1 b. This and the following need a factor: @throws std::logic_error  there is none
+  [[nodiscard]] Eigen::VectorXd solve(const Eigen::VectorXd& b) const;
+  [[nodiscard]] double log_determinant() const;
+
+  /// Elements of A^-1 on the pattern of L + L' by the recursion of Takahashi, Fagan & Chen (1973) and Erisman & Tinney (1975,
+  /// CACM 18:177), column by column from the last to the first. With the unit factor l_kj = L_kj / L_jj,
+  ///
+  ///     Z_ij = - sum_{k > j} Z_ik l_kj,   i > j,        Z_jj = 1 / L_jj^2 - sum_{k > j} l_kj Z_kj
+  ///
+  /// i and k over the pattern of column j of L: the sums stay inside the pattern of L. About as many operations as the
+  /// factorization: the sum of the squared lengths of its columns.
+  [[nodiscard]] SelectedInverse selected_inverse() const;
+
+  /// Of L, diagonal included; known from the analysis.
+  [[nodiscard]] std::size_t factor_entries() const;
+
+ private:
+  struct Cholmod;
+  std::unique_ptr<Cholmod> cholmod_;
+};
+
+}  // namespace coast::estimate

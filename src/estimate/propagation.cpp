@@ -1,0 +1,109 @@
+#include "propagation.hpp"
+
+namespace coast::estimate {
+
+namespace {
+
+// What is not known of the motion while IMU samples are missing: constant errors of the bridged rate and specific force.
+constexpr double kGapRateSd = 0.3;   // rad/s
+constexpr double kGapForceSd = 3.0;  // m/s^2
+
+}  // namespace
+
+Propagation::Propagation(const Mission& mission, const StateLayout& layout)
+    : mission_(mission),
+      layout_(layout),
+      navigator_(layout, mission.increments, mission.earth_rate),
+      transition_(layout, mission.earth_rate) {}
+
+void Propagation::set(const Navigator::Start& start) {
+  navigator_.set(start);
+  transition_.reset();
+  gap_ = 0.0;
+}
+
+void Propagation::correct(const record::NavState& nav, const Eigen::VectorXd& x) {
+  navigator_.correct(nav, x);
+  transition_.reset();
+}
+
+void Propagation::step(const SampleStep& step) {
+  if (step.span) missing_share_ = missing_share(mission_.imu, *step.span);
+  transition_.add(navigator_.propagate(step.raw));
+  gap_ += missing_share_ * step.raw.dt;
+  if (transition_.substep_due()) fold();
+  navigator_.set_time(step.at);
+}
+
+void Propagation::fold() {
+  follow_noise_level();
+  transition_.fold(navigator_.gravity_gradient());
+  navigator_.advance_sensor_states();
+}
+
+// The level at the middle of a fold holds for all of it.
+void Propagation::follow_noise_level() {
+  const std::vector<record::NoiseLevel>& levels = mission_.imu.noise;
+  if (levels.empty()) return;
+  const geo::GpsTime t = navigator_.nav().t - 0.5 * TransitionAccumulator::kSubstep;
+  const std::size_t before = noise_level_;
+  while (noise_level_ + 1 < levels.size() && levels[noise_level_].to <= t) ++noise_level_;
+  if (noise_level_ == before && noise_level_ > 0) return;
+  const auto scaled = [&](const Eigen::Vector3d& factors, const Eigen::Matrix3d& density_b) -> Eigen::Matrix3d {
+    const Eigen::Matrix3d root = mission_.C_s_b * factors.cwiseSqrt().asDiagonal() * mission_.C_s_b.transpose();
+    return root * density_b * root;
+  };
+  const record::NoiseLevel& level = levels[noise_level_];
+  transition_.set_white_noise(scaled(level.gyro, layout_.gyro_density_b()), scaled(level.accel, layout_.accel_density_b()));
+}
+
+void Propagation::add_gap_noise(Eigen::MatrixXd& P) {
+  if (gap_ == 0.0) return;
+  const double psi = kGapRateSd * gap_;
+  const double v = kGapForceSd * gap_;
+  P.diagonal().segment<3>(kPsi).array() += psi * psi;
+  P.diagonal().segment<3>(kVel).array() += v * v;
+  P.diagonal().segment<3>(kPos).array() += 0.25 * v * v * gap_ * gap_;
+  gap_ = 0.0;
+}
+
+void Propagation::close(Eigen::MatrixXd& P) {
+  fold();
+  transition_.propagate_covariance(P);
+  add_gap_noise(P);
+}
+
+double missing_share(const record::ImuRecording& imu, double span) {
+  const double missing = span - 1.0 / imu.rate_hz;
+  return missing > 0.5 / imu.rate_hz ? missing / span : 0.0;
+}
+
+UpdateContext update_context(const Mission& mission, const StateLayout& layout, const SampleCursor& cursor,
+                             const Navigator& navigator, const Eigen::Matrix3d& C_n_e) {
+  ins::RawIncrement next = cursor.remainder;
+  if (next.dt == 0.0 && cursor.next_sample < mission.imu.samples.size()) {
+    const record::ImuSample& sample = mission.imu.samples[cursor.next_sample];
+    if (missing_share(mission.imu, sample.t - navigator.nav().t) == 0.0) next = {sample.dt, sample.dtheta, sample.dv};
+  }
+  return {layout, mission.lever_arm_b, navigator.omega_eb_b(next), C_n_e};
+}
+
+record::NavState repeat_nominal(const Mission& mission, const Knot& knot, geo::GpsTime end, Navigator& navigator,
+                                std::vector<record::NavState>& epochs) {
+  navigator.set(knot.post);
+  SampleCursor cursor{knot.next_sample, knot.remainder};
+  double pending = 0.0;
+  walk(mission.imu, cursor, end, navigator, [&](const SampleStep& step) {
+    navigator.propagate(step.raw);
+    navigator.set_time(step.at);
+    if (step.whole) epochs.push_back(navigator.nav());
+    pending += step.raw.dt;
+    if (TransitionAccumulator::substep_due(pending)) {  // the same instants as in the forward pass
+      navigator.advance_sensor_states();
+      pending = 0.0;
+    }
+  });
+  return navigator.nav();
+}
+
+}  // namespace coast::estimate
