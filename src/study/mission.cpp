@@ -282,14 +282,14 @@ void note_batch(const estimate::BatchSolution& batch, const std::vector<estimate
                 record::Events& events) {
   constexpr double kDoubted = 0.5;
   const auto end = batch.smoothed.back().nav.t;
-  long doubted = 0;
+  std::size_t doubted = 0;
   for (std::size_t i = 0; i < batch.weights.size(); ++i)
     if (measurements[i].what.kind == estimate::UpdateKind::kGnssPosition && batch.weights[i] < kDoubted) ++doubted;
   events.push_back(
       {record::Event::Severity::kInfo, "batch",
        fmt::format("batch solution after {} iterations; {} GNSS positions left out or at less than half their weight",
                    batch.cost.size() - 1, doubted),
-       end, doubted});
+       end, 1});
   if (!batch.converged)
     events.push_back({record::Event::Severity::kWarning, "batch_not_converged",
                       "the batch solution has not come to rest: do not trust it where it differs from `smoother: rts`", end,
