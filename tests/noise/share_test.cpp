@@ -56,18 +56,15 @@ TEST(Share, StaysOneWhenWhiteNoiseIsScaled) {
 }
 
 TEST(Share, SpoiledEntriesAreRefused) {
-  for (const char* entry :
-       {"{process: share, of: a, weight: 0, own: {process: random_constant, sigma: 1, unit: deg/s}}",
-        "{process: share, of: a, weight: 1.5, own: {process: random_constant, sigma: 1, unit: deg/s}}",
-        "{process: share, of: a, weight: 1, own: {process: share, of: b, weight: 1, own: {process: random_constant, sigma: 1, "
-        "unit: deg/s}}}",
-        "{process: share, weight: 1, own: {process: random_constant, sigma: 1, unit: deg/s}}",
-        "{process: share, of: a, weight: 1}"})
-    EXPECT_THROW(
-        (void)ImuErrorModel::from(io::parse_yaml(
-            std::string("schema: coast.imu_error_model/1\ngyro: {all: [") + entry + "]}\naccel: {all: []}\n", "m.yaml")),
-        InputError)
-        << entry;
+  const std::string own = "own: {process: random_constant, sigma: 1, unit: deg/s}}";
+  const std::string share = "{process: share, of: a, ";
+  const std::vector<std::string> entries{share + "weight: 0, " + own, share + "weight: 1.5, " + own, share + "weight: 1}",
+                                         "{process: share, weight: 1, " + own,
+                                         share + "weight: 1, own: {process: share, of: b, weight: 1, " + own + "}"};
+  for (const std::string& entry : entries) {
+    const std::string text = "schema: coast.imu_error_model/1\ngyro: {all: [" + entry + "]}\naccel: {all: []}\n";
+    EXPECT_THROW((void)ImuErrorModel::from(io::parse_yaml(text, "m.yaml")), InputError) << entry;
+  }
 }
 
 }  // namespace
