@@ -34,21 +34,10 @@ Along along(const ModelledSensor& sensor, int body_axis) {
   return {static_cast<int>(axis), sensor.C_s_b(body_axis, axis) > 0.0 ? 1.0 : -1.0};
 }
 
-/// Scale factors keep their sign: the signal that they act on turns round with the axis.
-double sign_of(const noise::Process& process, const ModelledSensor& sensor, const Along& own, int body_axis) {
-  switch (process.input()) {
-    case noise::Input::kOne:
-      return own.sign;
-    case noise::Input::kOwnAxis:
-      return 1.0;
-    case noise::Input::kNextAxis:
-    case noise::Input::kPrevAxis:
-      break;
-  }
-  if (own.axis != body_axis || sensor.C_s_b.diagonal().minCoeff() < std::cos(kMostTilt))
-    throw std::invalid_argument(
-        fmt::format("{} has a misalignment in its error model and axes other than the body's", sensor.name));
-  return 1.0;
+/// A scale factor keeps its sign: the signal that it acts on turns round with the axis. The two misalignments of an axis are
+/// alike and as likely of either sign, so it does not matter which is which where axes change places.
+double sign_of(const noise::Process& process, const Along& own) {
+  return process.input() == noise::Input::kOne ? own.sign : 1.0;
 }
 
 }  // namespace
@@ -77,8 +66,7 @@ noise::ImuErrorModel extended_error_model(const std::string& name, double rate_h
       for (const noise::ProcessPtr& process : sensors[k].model->axes(sensor_of(c))[static_cast<std::size_t>(own.axis)])
         axes.at(c < 3 ? 0 : 1)
             .at(static_cast<std::size_t>(c % 3))
-            .push_back(
-                noise::make_share(process, sensors[k].name, weight * sign_of(*process, sensors[k], own, c % 3), sensor_of(c)));
+            .push_back(noise::make_share(process, sensors[k].name, weight * sign_of(*process, own), sensor_of(c)));
     }
   return noise::ImuErrorModel::of(name, rate_hz, std::move(axes[0]), std::move(axes[1]));
 }

@@ -28,7 +28,7 @@ inline constexpr double kMostTilt = 0.2;     ///< rad: an error on one axis is h
 [[nodiscard]] Eigen::MatrixXd extended_weights(std::span<const ModelledSensor> sensors);
 
 /// Error model of the sum: every process of every sensor as a share of it, in body axes.
-/// @throws std::invalid_argument  as above; a misalignment where axes are permuted or point the other way
+/// @throws std::invalid_argument  as above
 [[nodiscard]] noise::ImuErrorModel extended_error_model(const std::string& name, double rate_hz,
                                                         std::span<const ModelledSensor> sensors);
 
