@@ -8,6 +8,7 @@
 
 #include "coast/array/channel.hpp"
 #include "coast/array/synthetic.hpp"
+#include "coast/geo/rotation.hpp"
 #include "coast/geo/units.hpp"
 #include "coast/io/yaml.hpp"
 #include "support/support.hpp"
@@ -63,7 +64,7 @@ TEST(Extended, WhatCannotBeIsRefused) {
   const auto bent =
       model_of("all: [{process: white_noise, density: 1, unit: deg/s/sqrt(Hz)}, {process: misalignment, sigma: 1, unit: mrad}]",
                kForceNoise);
-  const Eigen::Matrix3d tilted = Eigen::AngleAxisd(0.4, Eigen::Vector3d::UnitX()).toRotationMatrix();
+  const Eigen::Matrix3d tilted = geo::rotation_matrix(0.4 * Eigen::Vector3d::UnitX());
   const Eigen::Matrix3d over = Eigen::Vector3d(1.0, -1.0, -1.0).asDiagonal();
   const auto refused = [&](const ModelledSensor& other) {
     const std::vector<ModelledSensor> sensors{{"good", &good}, other};
