@@ -69,13 +69,17 @@ BlockOffsets offsets_in_block(const Signals& signals, int channel, std::size_t f
 }
 
 /// A sensor that is nowhere in a block has there what it had in a neighbouring one against those that are in this block: the
-/// level that all are brought to stays that of all sensors while one is out.
+/// level that all are brought to stays that of all sensors while one is out. Where no two are there at once, all is as in the
+/// neighbour.
 void fill_from(const BlockOffsets& neighbour, BlockOffsets& block) {
-  if (block.present.all() || !block.present.any()) return;
-  const auto mean_of_present = [&](const Eigen::VectorXd& offset) {
-    return block.present.select(offset.array(), 0.0).sum() / static_cast<double>(block.present.count());
-  };
-  const double shift = mean_of_present(block.offset) - mean_of_present(neighbour.offset);
+  if (block.present.all()) return;
+  if (!block.present.any()) {
+    block = neighbour;
+    return;
+  }
+  const Eigen::Array<bool, Eigen::Dynamic, 1> both = block.present && neighbour.present;
+  if (!both.any()) return;
+  const double shift = both.select((block.offset - neighbour.offset).array(), 0.0).sum() / static_cast<double>(both.count());
   for (Eigen::Index k = 0; k < block.offset.size(); ++k)
     if (!block.present(k) && neighbour.present(k)) {
       block.offset(k) = neighbour.offset(k) + shift;

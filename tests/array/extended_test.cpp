@@ -125,6 +125,20 @@ TEST(Extended, TheSumKeepsTheBiasOfASensorThatIsOut) {
   EXPECT_LE((sum.array() - 1.6).abs().maxCoeff(), 6e-3);
 }
 
+TEST(Extended, OfTwoSensorsTheSumKeepsTheBiasOfTheOneThatIsOut) {
+  Signals signals = random_array(2, 4000);
+  signals.sensors[0].values = (1e-3 * signals.sensors[0].values).array() + 3.0;
+  signals.sensors[1].values *= 1e-3;
+  for (std::size_t n = 1000; n < 3000; ++n) signals.sensors[0].usable[n] = 0;
+  Signals levelled = signals;
+  static_cast<void>(take_off_relative_offsets(levelled, 2.0));
+  MergeOptions options{.merge = Merge::kExtended};
+  options.weights = Eigen::MatrixXd::Constant(kChannels, 2, 0.5);
+  const Eigen::VectorXd sum =
+      with_offsets(signals, levelled, 0, merge_channel(levelled, 0, options).value, options.weights.row(0).transpose());
+  EXPECT_LE((sum.array() - 1.5).abs().maxCoeff(), 6e-3);  // noise of 1e-3, of one sensor at worst
+}
+
 TEST(Extended, BlocksAreMeansOfWhatMayBeUsedAllAlong) {
   Signals signals = random_array(2, 250);
   signals.sensors[1].usable[120] = 0x1F;  // one channel of one sample
