@@ -97,7 +97,7 @@ struct StudiedRun {
   std::vector<double> mse;  // in the order of merge_names()
   std::vector<ResidualModel> models;
   std::vector<std::vector<double>> errors;
-  std::vector<double> sd, predicted_sd;
+  std::vector<double> residuals, sd, predicted_sd;
 };
 
 std::vector<std::string> merge_names(std::size_t sensors) {
@@ -155,9 +155,11 @@ StudiedRun study_run(const MergeStudyOptions& options, std::uint64_t seed) {
   const auto keep = [&](const auto& row) { run.errors.emplace_back(row.begin(), row.end()); };
   for (Eigen::Index k = 0; k < drawn.errors.rows(); ++k) keep(drawn.errors.row(k));
   keep(mean.value);
+  keep(by_residuals.value);
   keep(by_errors.value);
   const Predicted found = predicted_by(by_errors.models.front().model, drawn.errors.row(0));
   for (Eigen::Index n = 0; n < drawn.errors.cols(); ++n) {
+    run.residuals.push_back(drawn.errors(0, n) - found.mean(n));
     run.sd.push_back(std::sqrt(truth.front().variance(n)));
     run.predicted_sd.push_back(std::sqrt(found.variance(n)));
   }
@@ -201,6 +203,7 @@ MergeStudy run_merge_study(const MergeStudyOptions& options, const std::function
       add_to_mean(study.residual_models[k], run.models[k], 1.0 / static_cast<double>(options.runs));
   }
   study.first_errors = std::move(runs.front().errors);
+  study.first_residuals = std::move(runs.front().residuals);
   study.first_sd = std::move(runs.front().sd);
   study.first_predicted_sd = std::move(runs.front().predicted_sd);
   return study;

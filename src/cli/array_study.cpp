@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <nlohmann/json.hpp>
 #include <numeric>
@@ -12,6 +13,7 @@
 #include "coast/noise/arma_garch_study.hpp"
 #include "coast/report/panels.hpp"
 #include "coast/report/render.hpp"
+#include "coast/study/drift.hpp"
 #include "coast/study/paired.hpp"
 #include "commands.hpp"
 #include "load.hpp"
@@ -81,16 +83,17 @@ Json residual_json(const array::ResidualModel& model) {
 report::Panel error_boxes(const std::vector<std::vector<double>>& errors) {
   report::Panel panel = report::xy_panel(
       "boxes", "Errors", {"error", "", report::Axis::Scale::kLinear, {}, {}}, {"", "", report::Axis::Scale::kLinear, {}, {}},
-      "Of the first run: each sensor, their mean, corrected by errors. 5, 25, 50, 75 and 95 %.");
+      "Of the first run: each sensor, their mean, corrected by residuals and by errors. 5, 25, 50, 75 and 95 %.");
+  constexpr std::array kMerged{"mean", "corrected", "corrected by errors"};
+  const std::size_t sensors = errors.size() - kMerged.size();
   report::Boxes boxes;
   for (std::size_t i = 0; i < errors.size(); ++i) {
     std::vector<double> sorted = errors[i];
     std::ranges::sort(sorted);
     const auto q = [&](double p) { return sorted[static_cast<std::size_t>(p * static_cast<double>(sorted.size() - 1))]; };
     boxes.boxes.push_back({static_cast<double>(i), q(0.05), q(0.25), q(0.5), q(0.75), q(0.95)});
-    const std::string name =
-        i + 2 < errors.size() ? fmt::format("single {}", i + 1) : (i + 2 == errors.size() ? "mean" : "corrected");
-    panel.plot().y.ticks.push_back({static_cast<double>(i), name});
+    panel.plot().y.ticks.push_back(
+        {static_cast<double>(i), i < sensors ? fmt::format("single {}", i + 1) : std::string(kMerged[i - sensors])});
   }
   panel.plot().boxes.push_back(std::move(boxes));
   return panel;
@@ -100,12 +103,15 @@ report::Panel error_boxes(const std::vector<std::vector<double>>& errors) {
 report::Panel variance_panel(const array::MergeStudy& study, double dt) {
   report::Panel panel =
       report::time_panel("tracking", "Variance tracking", "",
-                         "Sensor 1, first run: its errors, the true standard deviation and the predicted one.");
+                         "Sensor 1, first run: its errors less what the model predicts of them, their true standard deviation "
+                         "and the predicted one.");
+  constexpr std::size_t kShown = 3000;  // of more a panel keeps the extremes alone, and dots would have a hole in the middle
   std::vector<double> t;
-  for (std::size_t n = 0; n < study.first_sd.size(); ++n) t.push_back(dt * static_cast<double>(n));
-  report::add_points(panel.plot(), "errors", curve(t, study.first_errors.front()), report::Tone::kMuted).radius_px = 0.8;
-  report::add_line(panel.plot(), "true", curve(t, study.first_sd), report::Tone::kReference);
-  report::add_line(panel.plot(), "predicted", curve(t, study.first_predicted_sd), report::Tone::kSmoothed);
+  for (std::size_t n = 0; n < std::min(kShown, study.first_sd.size()); ++n) t.push_back(dt * static_cast<double>(n));
+  const auto shown = [&](const std::vector<double>& all) { return std::vector(all.begin(), all.begin() + std::ssize(t)); };
+  report::add_points(panel.plot(), "residuals", curve(t, shown(study.first_residuals)), report::Tone::kMuted).radius_px = 0.8;
+  report::add_line(panel.plot(), "true", curve(t, shown(study.first_sd)), report::Tone::kReference);
+  report::add_line(panel.plot(), "predicted", curve(t, shown(study.first_predicted_sd)), report::Tone::kSmoothed);
   return panel;
 }
 
@@ -190,7 +196,7 @@ StudyPart study_outages(const ArrayStudyConfig& config, const Progress& progress
                                                 {"horizontal_median_m", spread.median},
                                                 {"ratio_to_mean", ratio.ratio},
                                                 {"ratio_95", {ratio.low, ratio.high}},
-                                                {"inside_95", study::ensemble_drift(run.outages, smoothed).inside_95}};
+                                                {"inside_95", study::drift_of(run.outages, smoothed).inside_95}};
       row.push_back({number(spread.rms)});
       row.push_back({decimals(ratio.ratio, 3)});
       row.push_back({fmt::format("{} to {}", decimals(ratio.low, 3), decimals(ratio.high, 3))});

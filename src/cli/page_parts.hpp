@@ -25,6 +25,7 @@ namespace coast::cli {
 [[nodiscard]] std::optional<report::Section> separation_section(const ProcessPage& page);
 [[nodiscard]] std::optional<report::Section> innovation_section(const ProcessPage& page);
 [[nodiscard]] report::Section sensor_section(const ProcessPage& page);
+[[nodiscard]] std::optional<report::Section> batch_section(const ProcessPage& page);
 [[nodiscard]] report::Section body_section(const ProcessPage& page);
 [[nodiscard]] std::optional<report::Section> outage_section(const ProcessPage& page);
 [[nodiscard]] std::optional<report::Section> reference_section(const ProcessPage& page);

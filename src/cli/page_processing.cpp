@@ -22,6 +22,8 @@ report::Table settings_table(const ProcessPage& page) {
   if (const auto& batch = page.mission.setup().batch)
     add("smoother", fmt::format("sparse batch, {}, scale {}", kLosses.at(static_cast<std::size_t>(batch->gnss.kind)),
                                 number(batch->gnss.scale)));
+  else if (page.config.combined)
+    add("smoother", "none: forward and backward filter combined");
   else
     add("smoother", page.config.smooth ? "RTS (backward recursion)" : "none");
   add("passes of the filter",

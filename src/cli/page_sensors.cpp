@@ -8,6 +8,7 @@
 #include "coast/geo/units.hpp"
 #include "coast/noise/error_model.hpp"
 #include "page_parts.hpp"
+#include "page_state_words.hpp"
 
 namespace coast::cli {
 
@@ -21,22 +22,6 @@ struct Group {
   std::vector<std::string> labels;  ///< of the plots
   std::vector<std::string> units;   ///< candidates, coarsest first
 };
-
-const char* plain_name(const std::string& process) {
-  if (process == "random_constant") return "bias, constant part";
-  if (process == "gauss_markov") return "bias, Gauss-Markov part";
-  if (process == "random_walk") return "bias, random walk part";
-  if (process == "scale_factor") return "scale factor";
-  if (process == "misalignment") return "misalignment";
-  return nullptr;
-}
-
-std::vector<std::string> units_of(const std::string& process, bool gyro) {
-  if (process == "scale_factor") return {"ppm"};
-  if (process == "misalignment") return {"mrad"};
-  if (gyro) return {"deg/s", "deg/h"};
-  return {"mg", "ug"};
-}
 
 /// "gyro_x misalignment" or "gyro_x misalignment of left" -> sensor, axis, process, whose. Auxiliary states have no space in
 /// their names.
@@ -57,8 +42,7 @@ void add_sensor_track(const StateTrack& track, std::vector<Group>& groups) {
   auto group = std::ranges::find_if(groups, same);
   if (group == groups.end()) {
     const auto earlier = std::ranges::count_if(groups, [&](const Group& g) { return g.key == key; });
-    const char* name = plain_name(process);
-    std::string title = fmt::format("{} {}", gyro ? "Gyro" : "Accelerometer", name != nullptr ? name : process);
+    std::string title = fmt::format("{} {}", gyro ? "Gyro" : "Accelerometer", plain_name(process));
     if (earlier > 0) title += fmt::format(" {}", earlier + 1);
     title += whose;
     groups.push_back({key, std::move(title), {}, {}, units_of(process, gyro)});
@@ -85,6 +69,7 @@ constexpr Auxiliary kAuxiliaries[] = {
     {"lever_arm", "Lever arm, estimated minus configured", "m", {"forward", "right", "down"}},
     {"gnss_time_offset", "GNSS time offset, estimated minus configured", "ms", {"offset", "", ""}},
     {"vehicle_mounting", "Vehicle against body", "deg", {"pitch", "yaw", ""}},
+    {"base_offset", "Offset of all GNSS positions", "m", {"x (ECEF)", "y (ECEF)", "z (ECEF)"}},
     {"gnss_error_horizontal", "Correlated GNSS error, horizontal", "m", {"N", "E", ""}},
     {"gnss_error_vertical", "Correlated GNSS error, vertical", "m", {"D", "", ""}},
 };
@@ -117,17 +102,11 @@ std::vector<Group> groups_of(const std::vector<StateTrack>& states) {
   return groups;
 }
 
-/// The coarsest unit in which the estimates of the end are not mostly zeros.
-const geo::Unit* unit_for(const Group& group) {
-  constexpr double kLeast = 0.1;
-  const geo::Unit* unit = nullptr;
-  for (const std::string& name : group.units) {
-    unit = &geo::unit(name);
-    double largest = 0.0;
-    for (const StateTrack* t : group.tracks) largest = std::max({largest, std::abs(t->forward.back()), t->forward_sd.back()});
-    if (largest / unit->to_si >= kLeast) break;
-  }
-  return unit;
+/// By the estimates of the end.
+const geo::Unit* unit_of(const Group& group) {
+  double largest = 0.0;
+  for (const StateTrack* t : group.tracks) largest = std::max({largest, std::abs(t->forward.back()), t->forward_sd.back()});
+  return unit_for(group.units, largest);
 }
 
 std::vector<double> scaled(std::vector<double> values, double unit) {
@@ -142,7 +121,7 @@ std::string id_of(const std::string& text) {
 }
 
 report::Panel state_panel(const ProcessPage& page, const Group& group, std::size_t index) {
-  const geo::Unit* unit = unit_for(group);
+  const geo::Unit* unit = unit_of(group);
   const double to_si = unit != nullptr ? unit->to_si : 1.0;
   report::Panel panel = report::stacked_time_panel(
       fmt::format("{}-{}", id_of(group.key), index), group.title, group.labels, unit != nullptr ? std::string(unit->name) : "",
@@ -182,7 +161,7 @@ report::Table value_table(const std::vector<Group>& groups) {
   table.columns = {{"error", "", false}, {"component", "", false}, {"value", ""},
                    {"sigma", ""},        {"sigma at start", ""},   {"unit", "", false}};
   for (const Group& group : groups) {
-    const geo::Unit* unit = unit_for(group);
+    const geo::Unit* unit = unit_of(group);
     const double to_si = unit != nullptr ? unit->to_si : 1.0;
     for (std::size_t i = 0; i < group.tracks.size(); ++i) {
       const StateTrack& t = *group.tracks[i];

@@ -10,23 +10,24 @@ namespace coast::cli {
 namespace {
 
 /// One quantile of one solution over the durations.
-report::Series over_durations(const std::vector<DriftRow>& rows, Drift DriftRow::*solution, double Drift::*quantile_of) {
+report::Series over_durations(const std::vector<DriftRow>& rows, study::Drift DriftRow::*solution,
+                              double study::Spread::*quantile_of) {
   report::Series series;
   for (const DriftRow& row : rows) {
     series.x.push_back(row.duration_s);
-    series.y.push_back(row.*solution.*quantile_of);
+    series.y.push_back((row.*solution).horizontal.*quantile_of);
   }
   return series;
 }
 
-void add_quantiles(report::Plot& plot, const std::vector<DriftRow>& rows, Drift DriftRow::*solution, const std::string& name,
-                   report::Tone tone) {
-  report::Line& median = report::add_line(plot, name + " median", over_durations(rows, solution, &Drift::median), tone);
+void add_quantiles(report::Plot& plot, const std::vector<DriftRow>& rows, study::Drift DriftRow::*solution,
+                   const std::string& name, report::Tone tone) {
+  report::Line& median = report::add_line(plot, name + " median", over_durations(rows, solution, &study::Spread::median), tone);
   median.width_px = 2.4;
-  report::add_line(plot, name + " 68 %", over_durations(rows, solution, &Drift::p68), tone).width_px = 1.0;
-  report::add_line(plot, name + " 95 %", over_durations(rows, solution, &Drift::p95), tone).style =
+  report::add_line(plot, name + " 68 %", over_durations(rows, solution, &study::Spread::p68), tone).width_px = 1.0;
+  report::add_line(plot, name + " 95 %", over_durations(rows, solution, &study::Spread::p95), tone).style =
       report::Line::Style::kDashed;
-  report::add_points(plot, name + " largest", over_durations(rows, solution, &Drift::max), tone).radius_px = 3.0;
+  report::add_points(plot, name + " largest", over_durations(rows, solution, &study::Spread::max), tone).radius_px = 3.0;
 }
 
 report::Panel drift_panel(const std::vector<DriftRow>& rows) {
@@ -47,24 +48,23 @@ report::Table drift_table_of(const ProcessPage& page, const std::vector<DriftRow
   table.id = "drift-table";
   table.title = "Drift by duration";
   table.caption = fmt::format(
-      "Largest horizontal error of each outage against {}{}; quantiles over the outages. Inside: share of the smoothed errors, "
-      "axis "
-      "by axis, within their predicted 95 %.",
+      "Largest horizontal error of each outage against {}{}; quantiles over the outages. Inside: share of the errors, axis by "
+      "axis, "
+      "within their predicted 95 %.",
       page.result.compared_with == "reference" ? "the reference" : "the run without gaps",
-      rows.front().forward_against_gnss ? " and against the withheld fixes (GNSS)" : "");
+      rows.front().forward.against_gnss ? " and against the withheld fixes (GNSS)" : "");
   table.columns = {{"duration", "s"}, {"outages", ""}, {"solution", "", false}, {"median", "m"},
                    {"68 %", "m"},     {"95 %", "m"},   {"largest", "m"},        {"inside", "%"}};
-  const bool gnss = rows.front().forward_against_gnss.has_value();
+  const bool gnss = rows.front().forward.against_gnss.has_value();
   if (gnss) table.columns.push_back({"median, GNSS", "m"});
   for (const DriftRow& row : rows)
     for (const bool smoothed : {false, true}) {
-      const Drift& drift = smoothed ? row.smoothed : row.forward;
-      const std::optional<Drift>& against_gnss = smoothed ? row.smoothed_against_gnss : row.forward_against_gnss;
+      const study::Drift& drift = smoothed ? row.smoothed : row.forward;
       auto line = cells({fmt::format("{:g}", row.duration_s), fmt::format("{}", row.outages), smoothed ? "smoothed" : "forward",
-                         number(drift.median), number(drift.p68), number(drift.p95), number(drift.max),
-                         smoothed ? percent(row.inside_95) : ""});
-      if (smoothed) line.back().verdict = verdict_of_share(row.inside_95, row.outages);
-      if (gnss) line.push_back({against_gnss ? number(against_gnss->median) : ""});
+                         number(drift.horizontal.median), number(drift.horizontal.p68), number(drift.horizontal.p95),
+                         number(drift.horizontal.max), percent(drift.inside_95)});
+      line.back().verdict = verdict_of_share(drift.inside_95, row.outages);
+      if (gnss) line.push_back({drift.against_gnss ? number(drift.against_gnss->median) : ""});
       table.rows.push_back(std::move(line));
     }
   return table;

@@ -11,6 +11,7 @@
 #include "coast/io/writers.hpp"
 #include "coast/noise/chi_square.hpp"
 #include "coast/report/render.hpp"
+#include "coast/study/outage_runs.hpp"
 #include "load.hpp"
 #include "process_page.hpp"
 #include "process_result.hpp"
@@ -82,6 +83,7 @@ class ProcessRun {
   [[nodiscard]] std::vector<study::Outage> outages() const;
   [[nodiscard]] estimate::FilterOptions options_with_outages() const;
   [[nodiscard]] std::optional<estimate::FilterState> carried(const estimate::FilterOptions& options);
+  [[nodiscard]] std::optional<estimate::BackwardKnots> backward(const estimate::FilterOptions& options);
   void count_innovations();
   void note_scores(const std::vector<study::Outage>& gaps, const Scores& forward, const Scores& smoothed);
   void note_estimates() const;
@@ -93,8 +95,9 @@ class ProcessRun {
   std::optional<record::Trajectory> reference_;
   study::Setup setup_;
   study::PreparedMission mission_;
-  study::GapFreeReference gap_free_;              ///< of the delivered solution
-  std::optional<estimate::FilterState> carried_;  ///< start that the passes before the last left
+  study::GapFreeReference gap_free_;                 ///< of the delivered solution
+  std::optional<estimate::FilterState> carried_;     ///< start that the passes before the last left
+  std::optional<estimate::BackwardKnots> backward_;  ///< of a combined solution
   study::Solution solution_;
   TrajectoryCurves curves_;
   KnotStates forward_knots_;
@@ -150,13 +153,19 @@ void ProcessRun::solve_without_outages() {
   if (config_.outages.empty() || reference_) return;
   study::SolutionOutputs outputs;
   (config_.smooth ? outputs.smoothed : outputs.forward) = [this](const auto& epoch) { gap_free_.add(epoch); };
-  static_cast<void>(
-      study::solve(mission_, mission_.options(), config_.smooth, outputs, progress_, carried(mission_.options())));
+  const std::optional<estimate::BackwardKnots> both = backward(mission_.options());
+  static_cast<void>(study::solve(mission_, mission_.options(), config_.smooth, outputs, progress_, carried(mission_.options()),
+                                 both ? &*both : nullptr));
 }
 
 std::optional<estimate::FilterState> ProcessRun::carried(const estimate::FilterOptions& options) {
   if (config_.passes == 1) return {};
   return study::carried_start(mission_, options, config_.passes, progress_);
+}
+
+std::optional<estimate::BackwardKnots> ProcessRun::backward(const estimate::FilterOptions& options) {
+  if (!config_.combined) return {};
+  return study::backward_knots(mission_, options, forward_knots_.sampling(), progress_);
 }
 
 estimate::FilterOptions ProcessRun::options_with_outages() const {
@@ -168,6 +177,7 @@ estimate::FilterOptions ProcessRun::options_with_outages() const {
 // They turn the recordings round for a while, so nothing may run beside them.
 void ProcessRun::run_earlier_passes() {
   carried_ = carried(options_with_outages());
+  backward_ = backward(options_with_outages());
 }
 
 void ProcessRun::solve_and_write() {
@@ -211,16 +221,20 @@ void ProcessRun::solve_and_write() {
   if (config_.smooth) outputs.smoothed = deliver;
   outputs.at_knots = [this](const estimate::FilterState& state) { forward_knots_.add(state); };
   outputs.states = forward_knots_.sampling();
-  solution_ = study::solve(mission_, options_with_outages(), config_.smooth, outputs, progress_, carried_);
+  solution_ = study::solve(mission_, options_with_outages(), config_.smooth, outputs, progress_, carried_,
+                           backward_ ? &*backward_ : nullptr);
+  backward_.reset();
   for (BackgroundSink* sink : {&write_forward, &draw_forward, &write, &draw}) sink->finish();
   forward_output.close();
   output.close();
 
   result_.innovations = std::move(solution_.forward.innovations);
   result_.events.insert(result_.events.end(), solution_.forward.events.begin(), solution_.forward.events.end());
+  result_.batch = std::move(solution_.batch);
   count_innovations();
   note_scores(gaps, forward_scores, scores);
   result_.states = state_tracks(solution_.filter->layout(), result_.start, forward_knots_.knots(), solution_.smoothed);
+  if (const auto event = unseen_base_offset(result_.states)) result_.events.push_back(*event);
 }
 
 void ProcessRun::note_scores(const std::vector<study::Outage>& gaps, const Scores& forward, const Scores& smoothed) {
@@ -280,15 +294,15 @@ void ProcessRun::study_sweep() {
   if (!config_.sweep || !config_.smooth) return;
   const record::Trajectory& truth = reference_ ? *reference_ : gap_free_.trajectory();
   const Eigen::Vector3d arm = reference_ ? config_.reference_lever_arm_b : Eigen::Vector3d::Zero();
-  const auto progress = [this](double fraction) {
-    if (progress_) progress_("studying outages", fraction);
-  };
   // What an outage of the sweep withholds must not have come in through the start that later passes carry.
   study::Solution single;
   if (carried_) single = study::solve(mission_, mission_.options(), true, {}, progress_);
   const estimate::KnotStore& knots = carried_ ? single.knots : solution_.knots;
-  result_.sweep = study::run_outages(mission_.mission(), mission_.model(), mission_.options(), knots, truth, arm,
-                                     study::outages_of(*config_.sweep, result_.start, result_.end), 60.0, progress);
+  const std::vector<study::Outage> outages = study::outages_of(*config_.sweep, result_.start, result_.end);
+  std::size_t done = 0;
+  result_.sweep = study::run_outages(mission_, knots, {truth, arm}, outages, [&](std::size_t, const study::OutageResult&) {
+    if (progress_) progress_("studying outages", static_cast<double>(++done) / static_cast<double>(outages.size()));
+  });
 }
 
 void ProcessRun::check_lever_arm() {

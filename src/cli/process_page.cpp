@@ -36,6 +36,7 @@ report::Page make_page(const ProcessPage& page) {
   add(separation_section(page));
   add(innovation_section(page));
   add(sensor_section(page));
+  add(batch_section(page));
   add(body_section(page));
   add(outage_section(page));
   add(reference_section(page));

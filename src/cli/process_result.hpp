@@ -92,6 +92,7 @@ struct ProcessResult {
   std::vector<Separation> separations;
   std::optional<estimate::NoiseFit> noise_fit;
   std::vector<StateTrack> states;
+  std::optional<estimate::BatchReport> batch;
   record::Events events;
 };
 

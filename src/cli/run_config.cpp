@@ -154,8 +154,13 @@ void read_filter(const Node& filter, RunConfig& run) {
 }
 
 void read_smoother(const Node& root, RunConfig& run) {
-  const std::size_t smoother = root.choice("smoother", {"rts", "batch", "none"}, 0);
-  run.smooth = smoother != 2;
+  const std::size_t smoother = root.choice("smoother", {"rts", "batch", "combined", "none"}, 0);
+  run.smooth = smoother != 3;
+  run.combined = smoother == 2;
+  if (run.combined && run.passes > 1)
+    throw root.at("smoother")
+        .error(fmt::format("a combined solution after {} passes", run.passes), "rts, or filter: {passes: 1}",
+               "After several passes either filter knows all fixes: they would count twice.");
   if (smoother != 1) return;
   if (run.tight)
     throw root.at("smoother")
@@ -203,6 +208,11 @@ void read_gnss(const Node& gnss, RunConfig& run, estimate::NoiseFitChoice& choic
                "Where a moving base is, is known to metres only.");
   run.setup.time_offset_s = gnss.number_within("time_offset_s", 0.0, -100.0, 100.0);
   run.setup.filter.auxiliary.time_offset_sd_s = gnss.number_within("time_offset_sd_s", 0.0, 0.0, 10.0);
+  run.setup.filter.auxiliary.base_offset_sd_m = gnss.number_within("base_offset_sd_m", 0.0, 0.0, 1e4);
+  if (run.tight && run.setup.filter.auxiliary.base_offset_sd_m > 0.0)
+    throw gnss.at("base_offset_sd_m")
+        .error("an offset of the positions of a run that does not use them", "coupling: loose, or no offset",
+               "Tight coupling takes the base's position as it is given.");
   run.setup.filter.use_gnss_velocity = gnss.flag("use_velocity", true);
   read_gnss_noise(gnss, run.setup, choice);
   if (run.tight && choice.gnss_scale)
@@ -218,13 +228,18 @@ geo::Geodetic geodetic_from(const Node& node) {
   return {geo::kDegree * v.x(), geo::kDegree * v.y(), v.z()};
 }
 
-study::OutageSweep sweep_from(const Node& node, const RunConfig& run) {
+study::OutageSweep sweep_from(const Node& node) {
   study::OutageSweep sweep;
   sweep.every_s = node.number_within("every_s", sweep.every_s, 1.0, 1e6);
   sweep.first_s = node.number_within("first_s", sweep.first_s, 0.0, 1e6);
   sweep.durations_s = node.at("durations_s").numbers();
   for (const double duration : sweep.durations_s)
     if (!(duration > 0.0)) throw node.at("durations_s").error("a duration of zero or less", "seconds above zero");
+  return sweep;
+}
+
+study::OutageSweep sweep_from(const Node& node, const RunConfig& run) {
+  study::OutageSweep sweep = sweep_from(node);
   sweep.satellites_left = satellites_left(node, run);
   return sweep;
 }

@@ -57,6 +57,7 @@ struct RunConfig {
   std::optional<study::OutageSweep> sweep;
   int passes = 1;  ///< odd: forward, then backward and forward again
   bool smooth = true;
+  bool combined = false;  ///< smoothed as forward and backward filter combined
   OutputOptions output;
 };
 
@@ -66,7 +67,8 @@ struct RunConfig {
 /// [latitude_deg, longitude_deg, height_m]
 [[nodiscard]] geo::Geodetic geodetic_from(const config::Node& node);
 
-/// Keys `every_s`, `first_s`, `durations_s`, `satellites` of a swept study of a run.
+/// Keys `every_s`, `first_s`, `durations_s` of a swept study; of a run, `satellites` too.
+[[nodiscard]] study::OutageSweep sweep_from(const config::Node& node);
 [[nodiscard]] study::OutageSweep sweep_from(const config::Node& node, const RunConfig& run);
 
 }  // namespace coast::cli

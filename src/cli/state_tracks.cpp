@@ -50,6 +50,20 @@ std::vector<StateTrack> state_tracks(const estimate::StateLayout& layout, geo::G
   return tracks;
 }
 
+std::optional<record::Event> unseen_base_offset(const std::vector<StateTrack>& states) {
+  for (const StateTrack& track : states) {
+    if (!track.name.starts_with("base_offset") || track.seconds.empty()) continue;
+    const double sd = track.smoothed_sd.empty() ? track.forward_sd.back() : track.smoothed_sd.back();
+    if (sd < estimate::kWeaklySeenRatio * track.forward_sd.front()) return {};
+    return record::Event{record::Event::Severity::kInfo, "base_offset_not_seen",
+                         "An offset of all GNSS positions cannot be seen: nothing else here knows where the Earth is. It moves "
+                         "the whole trajectory and changes no innovation; the sigmas of positions count it as it was stated. "
+                         "Only a second base, or a point or a `start` known from elsewhere, can show it.",
+                         std::nullopt, 1};
+  }
+  return {};
+}
+
 void SeparationRecorder::add(const estimate::FilterState& backward) {
   constexpr double kSame = 1e-4;  // s
   while (left_ > 0 && forward_[left_ - 1].nav.t - backward.nav.t > kSame) --left_;

@@ -35,6 +35,10 @@ class KnotStates {
                                                    const std::vector<KnotState>& forward,
                                                    const std::vector<estimate::SmoothedKnot>& smoothed);
 
+/// Says of an offset of all GNSS positions that nothing in the mission shows it.
+/// @return  nothing where there is none, or it is seen
+[[nodiscard]] std::optional<record::Event> unseen_base_offset(const std::vector<StateTrack>& states);
+
 /// Forward minus backward filter at the sampled knots of the forward one, while the backward one runs from the far end.
 class SeparationRecorder {
  public:

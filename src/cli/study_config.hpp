@@ -15,15 +15,19 @@ namespace coast::cli {
 struct SweepStudy {
   RunConfig run;
   study::OutageSweep sweep;
-  std::vector<study::NamedModel> models;
+  struct Model {
+    study::NamedModel named;
+    std::optional<bool> noise_estimated;  ///< white noise of the IMU, by the recording itself; absent: as the run says
+  };
+  std::vector<Model> models;
 };
 
 /// `scenario` and `seeds`: one scenario, simulated with many seeds.
 struct EnsembleStudy {
   std::filesystem::path scenario;
-  study::EnsemblePlan plan;                ///< one case for each truth, then one for each floor
-  std::size_t truths = 0;                  ///< cases of the plan that are filtered with every error model
-  std::vector<study::NamedModel> filters;  ///< those error models
+  study::EnsemblePlan plan;  ///< one case for each truth, then one for each floor
+  std::size_t truths = 0;    ///< cases of the plan that are filtered with every error model
+  std::size_t filters = 0;   ///< those error models
 };
 
 using StudyConfig = std::variant<SweepStudy, EnsembleStudy>;

@@ -47,11 +47,11 @@ Json sweep_json(const std::vector<study::OutageResult>& sweep, const std::string
     j["duration_s"] = row.duration_s;
     j["outages"] = row.outages;
     j["compared_with"] = compared_with;
-    j["forward_horizontal_max"] = drift_json(row.forward);
-    j["smoothed_horizontal_max"] = drift_json(row.smoothed);
-    if (row.forward_against_gnss) j["forward_horizontal_max_against_gnss"] = drift_json(*row.forward_against_gnss);
-    if (row.smoothed_against_gnss) j["smoothed_horizontal_max_against_gnss"] = drift_json(*row.smoothed_against_gnss);
-    j["smoothed_share_inside_95"] = row.inside_95;
+    j["forward_horizontal_max"] = spread_json(row.forward.horizontal);
+    j["smoothed_horizontal_max"] = spread_json(row.smoothed.horizontal);
+    if (row.forward.against_gnss) j["forward_horizontal_max_against_gnss"] = spread_json(*row.forward.against_gnss);
+    if (row.smoothed.against_gnss) j["smoothed_horizontal_max_against_gnss"] = spread_json(*row.smoothed.against_gnss);
+    j["smoothed_share_inside_95"] = row.smoothed.inside_95;
     list.push_back(j);
   }
   return list;
@@ -68,6 +68,24 @@ Json noise_json(const estimate::NoiseFit& fit) {
   j["gyro_factor"] = a.gyro_factor;
   j["accel_factor"] = a.accel_factor;
   j["log_likelihood"] = {fit.log_likelihood_before, fit.log_likelihood_after};
+  return j;
+}
+
+Json batch_json(const estimate::BatchReport& batch) {
+  Json j;
+  j["iterations"] = batch.cost.size();
+  j["converged"] = batch.converged;
+  j["cost"] = {batch.cost.front(), batch.cost.back()};
+  j["condition"] = batch.condition;
+  j["unknowns"] = Json::array();
+  for (const estimate::MissionUnknown& u : batch.unknowns)
+    j["unknowns"].push_back({{"name", u.name},
+                             {"estimate", u.estimate},
+                             {"prior_sd", u.prior_sd},
+                             {"posterior_sd", u.posterior_sd},
+                             {"observability", estimate::name(u.observability())},
+                             {"with", u.with},
+                             {"correlation", u.correlation}});
   return j;
 }
 
@@ -131,6 +149,7 @@ std::string summary_json(const ProcessResult& result) {
     for (const auto& outage : result.sweep) j["outages"].push_back(outage_json(outage, result.compared_with));
   }
   if (result.noise_fit) j["noise_fit"] = noise_json(*result.noise_fit);
+  if (result.batch) j["batch"] = batch_json(*result.batch);
   if (result.lever_arm)
     j["lever_arm_misclosure"] = {{"estimated_minus_configured_m", array_json(result.lever_arm->difference_m)},
                                  {"sd_m", array_json(result.lever_arm->sd_m)}};
@@ -161,8 +180,8 @@ std::string summary_text(const ProcessResult& result) {
   }
   for (const DriftRow& row : drift_table(result.sweep))
     text += fmt::format("outages of {:g} s {} ({}): largest horizontal error, median: forward {:.3f} m, smoothed {:.3f} m\n",
-                        row.duration_s, gnss_left(result.sweep.front().outage), row.outages, row.forward.median,
-                        row.smoothed.median);
+                        row.duration_s, gnss_left(result.sweep.front().outage), row.outages, row.forward.horizontal.median,
+                        row.smoothed.horizontal.median);
   for (const auto& o : result.outages)
     text += fmt::format("outage at {:.1f} s for {:g} s {}: largest horizontal error forward {:.3f} m{}\n", o.outage.start.sow(),
                         o.outage.duration_s, gnss_left(o.outage), o.forward.horizontal_max_m,

@@ -18,22 +18,24 @@ struct BatchStates {
 
 class BatchProblem {
  public:
+  /// @throws NumericalError  more memory needed than allowed
   BatchProblem(const Mission& mission, const StateLayout& layout, const FilterOptions& options, const FilterState& start,
-               const KnotStore& knots, const std::vector<KnotMeasurement>& measurements, const RobustLoss& loss);
+               const KnotStore& knots, const std::vector<KnotMeasurement>& measurements, const BatchOptions& batch);
 
   /// The filtered states; those that are one for the mission as they are at its end, which knows most.
-  [[nodiscard]] BatchStates filtered() const;
+  [[nodiscard]] BatchStates filtered();
   /// Linearises everything at the states: normal() d = right(), with d the errors of the states.
   /// @return  cost
   double linearise(const BatchStates& states);
   /// Takes errors out of the states.
-  void remove(const Eigen::VectorXd& d, BatchStates& states) const;
-  /// Covariance of all states at a knot from that of its unknowns and of the border.
-  [[nodiscard]] Eigen::MatrixXd covariance_at(std::size_t knot, const Eigen::MatrixXd& of_unknowns) const;
-  /// Rows of the normal equations that covariance_at wants.
-  [[nodiscard]] std::vector<Eigen::Index> rows_of(std::size_t knot) const;
+  void remove(const Eigen::VectorXd& d, BatchStates& states);
+  /// Covariance of the navigation states at a knot, and of all states there.
+  [[nodiscard]] Eigen::MatrixXd nav_covariance(std::size_t knot, const SelectedInverse& inverse);
+  [[nodiscard]] Eigen::MatrixXd covariance(std::size_t knot, const SelectedInverse& inverse);
 
-  [[nodiscard]] const ChainMatrix& normal() const { return normal_; }
+  [[nodiscard]] const LowerTriangle& normal() const { return normal_.lower(); }
+  void forget_normal() { normal_.clear(); }
+  [[nodiscard]] const std::vector<int>& unknown_once() const { return unknowns_.unknown_once(); }
   [[nodiscard]] const Eigen::VectorXd& right() const { return right_; }
   [[nodiscard]] const std::vector<double>& weights() const { return weights_; }
 
@@ -43,9 +45,13 @@ class BatchProblem {
   void add_transition(std::size_t knot, const BatchStates& states, const Propagation& arrived, const Eigen::MatrixXd& Q);
   /// Equations J d = target of the errors of all states at a knot, whitened.
   void add_equations(std::size_t knot, const Eigen::MatrixXd& J, const Eigen::VectorXd& target);
-  [[nodiscard]] Eigen::MatrixXd full_transition(const Propagation& arrived);
-  /// States that are one for the mission, at a knot from those at the start.
-  [[nodiscard]] Eigen::MatrixXd moved(std::size_t knot) const;
+  /// Rows of the transition of states that are unknowns at every knot.
+  [[nodiscard]] const Eigen::MatrixXd& transition_rows(const Propagation& arrived);
+  [[nodiscard]] const Eigen::MatrixXd& of_mission(std::size_t knot) { return unknowns_.of_mission(elapsed(knot)); }
+  /// Errors of all states at a knot.
+  [[nodiscard]] Eigen::VectorXd errors_at(std::size_t knot, const Eigen::VectorXd& d);
+  [[nodiscard]] double elapsed(std::size_t knot) const { return knots_.time(knot) - knots_.time(0); }
+  [[nodiscard]] Eigen::Index first_of(std::size_t knot) const { return normal_.first_of(static_cast<Eigen::Index>(knot)); }
   [[nodiscard]] bool is_in(const KnotMeasurement& m) const;
 
   const Mission& mission_;
@@ -55,13 +61,16 @@ class BatchProblem {
   const KnotStore& knots_;
   const std::vector<KnotMeasurement>& measurements_;
   RobustLoss loss_;
-  mutable BatchUnknowns unknowns_;  ///< keeps the interval it was last asked for
+  BatchUnknowns unknowns_;
   BlockTransitions blocks_;
   ChainMatrix normal_;
   Eigen::VectorXd right_;
   std::vector<double> weights_;
   std::size_t next_measurement_ = 0;
   double cost_ = 0.0;
+  // Kept for their memory.
+  Eigen::MatrixXd Phi_, W_, G_;
+  FilterState at_knot_;
 };
 
 }  // namespace coast::estimate

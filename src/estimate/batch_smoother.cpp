@@ -46,16 +46,17 @@ namespace {
 // coordinates (1e-9 m, against 1e-5 m of driving noise between knots) keeps it above 1e-9.
 constexpr double kRest = 1e-7;
 
-std::vector<SmoothedKnot> with_covariances(const BatchProblem& problem, const BatchStates& states,
-                                           const SelectedInverse& inverse, const KnotSampling& sampling) {
+std::vector<SmoothedKnot> with_covariances(BatchProblem& problem, const BatchStates& states, const SelectedInverse& inverse,
+                                           const KnotSampling& sampling) {
   std::vector<SmoothedKnot> knots(states.nav.size());
   for (std::size_t i = 0; i < knots.size(); ++i) {
     SmoothedKnot& knot = knots[i];
-    const Eigen::MatrixXd P = problem.covariance_at(i, inverse.block(problem.rows_of(i)));
     knot.nav = states.nav[i];
-    knot.cov = nav_covariance_n(P.topLeftCorner<kNav, kNav>(), knot.nav.r_eb_e);
     const std::optional<geo::GpsTime> previous = i > 0 ? std::optional(states.nav[i - 1].t) : std::nullopt;
-    if (!sampling.takes(previous, knot.nav.t)) continue;
+    const bool with_states = sampling.takes(previous, knot.nav.t);
+    const Eigen::MatrixXd P = with_states ? problem.covariance(i, inverse) : problem.nav_covariance(i, inverse);
+    knot.cov = nav_covariance_n(P.topLeftCorner<kNav, kNav>(), knot.nav.r_eb_e);
+    if (!with_states) continue;
     knot.x = states.x[i];
     knot.sd = P.diagonal().cwiseMax(0.0).cwiseSqrt();
   }
@@ -70,24 +71,29 @@ BatchSolution smooth_batch(const Mission& mission, const StateLayout& layout, co
                            const KnotSampling& states_kept) {
   if (mission.carrier != nullptr)
     throw std::invalid_argument("smooth_batch: carrier-phase observations; their ambiguities are filtered, take the smoother");
-  BatchProblem problem(mission, layout, options, start, knots, measurements, batch.gnss);
+  BatchProblem problem(mission, layout, options, start, knots, measurements, batch);
   BatchStates states = problem.filtered();
   BatchSolution solution;
-  solution.cost.push_back(problem.linearise(states));
-  SparseCholesky factor(problem.normal().lower());
-  for (int i = 0; i < batch.most_iterations && !solution.converged; ++i) {
-    factor.factorize(problem.normal().lower());
+  BatchReport& report = solution.report;
+  SparseCholesky factor(problem.normal());
+  for (int i = 0; i < batch.most_iterations && !report.converged; ++i) {
+    report.cost.push_back(problem.linearise(states));
+    factor.factorize(problem.normal());
     const Eigen::VectorXd d = factor.solve(problem.right());
     if (!d.allFinite())
       throw NumericalError("batch solution is not finite", geo::to_string(start.nav.t), "the forward filter has diverged");
     problem.remove(d, states);
-    solution.converged = d.dot(problem.right()) < kRest * static_cast<double>(d.size());
-    solution.cost.push_back(problem.linearise(states));
+    report.converged = d.dot(problem.right()) < kRest * static_cast<double>(d.size());
     if (progress) progress(static_cast<double>(i + 1) / static_cast<double>(batch.most_iterations));
   }
-  factor.factorize(problem.normal().lower());
-  solution.smoothed = with_covariances(problem, states, factor.selected_inverse(), states_kept);
+  problem.forget_normal();
+  report.condition = factor.condition();
+  const SelectedInverse inverse = factor.invert();
+  solution.smoothed = with_covariances(problem, states, inverse, states_kept);
   solution.weights = problem.weights();
+  const std::size_t middle = knots.size() / 2;
+  report.unknowns = mission_unknowns(layout, problem.unknown_once(), start.P,
+                                     {states.nav[middle], states.x[middle], problem.covariance(middle, inverse)});
   if (progress) progress(1.0);
   return solution;
 }

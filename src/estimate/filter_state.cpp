@@ -20,6 +20,12 @@ Eigen::Matrix<double, kNav, 1> error_between(const record::NavState& estimate, c
   return d;
 }
 
+void tie_position_to_fixes(const StateLayout& layout, Eigen::MatrixXd& P) {
+  if (!layout.base_offset()) return;
+  P.middleRows<3>(kPos) -= P.middleRows<3>(*layout.base_offset()).eval();
+  P.middleCols<3>(kPos) -= P.middleCols<3>(*layout.base_offset()).eval();
+}
+
 record::NavCovariance nav_covariance_n(const Eigen::Ref<const Eigen::Matrix<double, kNav, kNav>>& P,
                                        const Eigen::Vector3d& r_eb_e) {
   const Eigen::Matrix3d C_n_e = geo::C_n_e(geo::geodetic_from_ecef(r_eb_e));

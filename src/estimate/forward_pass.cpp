@@ -89,6 +89,7 @@ void ForwardPass::skip_measurements(geo::GpsTime before) {
   while (next_fix_ < gnss_epochs() && gnss_time(next_fix_) < before) ++next_fix_;
   const std::vector<record::MemberBlocks::Block>& blocks = member_blocks();
   while (next_block_ < blocks.size() && middle(blocks[next_block_]) < before) ++next_block_;
+  while (next_stop_ < options_.knots_at.size() && options_.knots_at[next_stop_] < before) ++next_stop_;
 }
 
 std::size_t ForwardPass::gnss_epochs() const {
@@ -105,6 +106,7 @@ geo::GpsTime ForwardPass::next_knot_time(geo::GpsTime end) const {
   if (next_fix_ < gnss_epochs()) t = std::min(t, gnss_time(next_fix_));
   const std::vector<record::MemberBlocks::Block>& blocks = member_blocks();
   if (next_block_ < blocks.size()) t = std::min(t, middle(blocks[next_block_]));
+  if (next_stop_ < options_.knots_at.size()) t = std::min(t, options_.knots_at[next_stop_]);
   return t;
 }
 
@@ -150,6 +152,7 @@ void ForwardPass::knot() {
   const std::vector<record::MemberBlocks::Block>& blocks = member_blocks();
   while (next_block_ < blocks.size() && middle(blocks[next_block_]) - state_.nav.t <= kTimeTolerance)
     member_updates(next_block_++);
+  while (next_stop_ < options_.knots_at.size() && options_.knots_at[next_stop_] - state_.nav.t <= kTimeTolerance) ++next_stop_;
   vehicle_updates();
   propagation_.correct(state_.nav, state_.x);
   if (outputs_.epochs) cov_at_start_ = nav_covariance_n(state_.P.topLeftCorner<kNav, kNav>(), state_.nav.r_eb_e);

@@ -21,6 +21,7 @@ class ForwardPass {
 
  private:
   void begin(const Navigator::Start& start, const Eigen::MatrixXd& P);
+  /// Those that a run which begins there has no use for, and instants of knots.
   void skip_measurements(geo::GpsTime before);
   [[nodiscard]] geo::GpsTime next_knot_time(geo::GpsTime end) const;
   [[nodiscard]] std::size_t gnss_epochs() const;
@@ -61,6 +62,7 @@ class ForwardPass {
 
   SampleCursor cursor_;
   std::size_t next_fix_ = 0;
+  std::size_t next_stop_ = 0;   ///< of options_.knots_at
   std::size_t next_block_ = 0;  ///< of the members
   struct MemberCount {
     std::size_t met = 0;

@@ -169,6 +169,8 @@ Eigen::VectorXd minimise(const Objective& objective, Eigen::VectorXd theta, cons
     solver.minimize(function, theta, value, low, high);
   } catch (const std::runtime_error&) {
     // The line search gives up where finite differences end: the best point seen is the answer.
+  } catch (const std::logic_error&) {
+    // It calls a direction that leads uphill a mistake of the caller's: finite differences again.
   }
   return best;
 }

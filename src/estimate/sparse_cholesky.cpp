@@ -7,7 +7,9 @@
 #include <cmath>
 #include <new>
 #include <numeric>
+#include <random>
 #include <stdexcept>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -27,7 +29,9 @@ struct Session {
     common.final_ll = 1;    // of L D L' CHOLMOD does not notice a negative pivot
     common.final_pack = 1;
     common.final_monotonic = 1;
-    common.nmethods = 2;
+    common.grow0 = 0;  // what the analysis counted is enough
+    common.grow2 = 0;
+    common.postorder = 0;  // it would take away the natural order's name, and with it cost a copy of the matrix
     common.method[0].ordering = CHOLMOD_NATURAL;
     common.method[1].ordering = CHOLMOD_AMD;
   }
@@ -53,7 +57,8 @@ struct FreeFactor {
 using Factor = std::unique_ptr<cholmod_factor, FreeFactor>;
 
 // CHOLMOD's view of it, read only: its structs know no const.
-cholmod_sparse view_of(const Eigen::SparseMatrix<double>& lower) {
+// The lower triangle by rows is the upper one by columns.
+cholmod_sparse view_of(const LowerTriangle& lower) {
   cholmod_sparse view{};
   view.nrow = static_cast<std::size_t>(lower.rows());
   view.ncol = static_cast<std::size_t>(lower.cols());
@@ -61,7 +66,7 @@ cholmod_sparse view_of(const Eigen::SparseMatrix<double>& lower) {
   view.p = const_cast<int*>(lower.outerIndexPtr());
   view.i = const_cast<int*>(lower.innerIndexPtr());
   view.x = const_cast<double*>(lower.valuePtr());
-  view.stype = -1;
+  view.stype = 1;
   view.itype = CHOLMOD_INT;
   view.xtype = CHOLMOD_REAL;
   view.dtype = CHOLMOD_DOUBLE;
@@ -89,18 +94,18 @@ Lower lower_of(const cholmod_factor& L) {
   return {n, n, start[n], start, static_cast<const int*>(L.i), static_cast<const double*>(L.x)};
 }
 
-// Where the elements of a compressed matrix are: a third of the memory of the matrix.
+// Tells patterns apart without keeping one: it would be a third of the memory of the matrix.
 struct Pattern {
-  explicit Pattern(const Eigen::SparseMatrix<double>& lower)
-      : starts(lower.outerIndexPtr(), lower.outerIndexPtr() + lower.cols() + 1),
-        rows(lower.innerIndexPtr(), lower.innerIndexPtr() + lower.nonZeros()) {}
-  [[nodiscard]] Eigen::Index size() const { return std::ssize(starts) - 1; }
-  [[nodiscard]] bool is_that_of(const Eigen::SparseMatrix<double>& lower) const {
-    return lower.isCompressed() && lower.rows() == size() && lower.cols() == size() &&
-           std::equal(starts.begin(), starts.end(), lower.outerIndexPtr()) &&
-           std::equal(rows.begin(), rows.end(), lower.innerIndexPtr());
+  explicit Pattern(const LowerTriangle& lower)
+      : size(lower.rows()),
+        starts(hash({lower.outerIndexPtr(), static_cast<std::size_t>(size) + 1})),
+        rows(hash({lower.innerIndexPtr(), static_cast<std::size_t>(lower.nonZeros())})) {}
+  static std::size_t hash(std::span<const int> numbers) {
+    return std::hash<std::string_view>{}({reinterpret_cast<const char*>(numbers.data()), numbers.size_bytes()});
   }
-  std::vector<int> starts, rows;
+  bool operator==(const Pattern&) const = default;
+  Eigen::Index size;
+  std::size_t starts, rows;
 };
 
 // Part of a column: ascending rows and their values.
@@ -124,14 +129,15 @@ const double* values_at(const int* rows, int count, const Column& column, double
 }
 
 // Z is L at first, and from the last column to the first becomes the inverse of L L'.
-void invert_in_place(Eigen::SparseMatrix<double>& Z) {
-  const int* start = Z.outerIndexPtr();
-  const int* row = Z.innerIndexPtr();
-  double* value = Z.valuePtr();
-  Eigen::VectorXd unit(Z.rows()), sum(Z.rows()), space(Z.rows());
+void invert_in_place(cholmod_factor& Z) {
+  const auto n = static_cast<Eigen::Index>(Z.n);
+  const int* start = static_cast<const int*>(Z.p);
+  const int* row = static_cast<const int*>(Z.i);
+  auto* value = static_cast<double*>(Z.x);
+  Eigen::VectorXd unit(n), sum(n), space(n);
   double* l = unit.data();
   double* s = sum.data();
-  for (Eigen::Index j = Z.cols(); j-- > 0;) {
+  for (Eigen::Index j = n; j-- > 0;) {
     double& diagonal = value[start[j]];
     const int* rows = row + start[j] + 1;
     double* below = value + start[j] + 1;
@@ -162,26 +168,31 @@ void invert_in_place(Eigen::SparseMatrix<double>& Z) {
 }  // namespace
 
 struct SparseCholesky::Cholmod {
-  explicit Cholmod(const Eigen::SparseMatrix<double>& lower) : pattern(lower) {
+  explicit Cholmod(const LowerTriangle& lower) : session(std::make_shared<Session>()), pattern(lower) {
+    analyse(lower, 1);
+    if (session->common.lnz > static_cast<double>(lower.nonZeros())) analyse(lower, 2);
+  }
+  void analyse(const LowerTriangle& lower, int methods) {
     cholmod_sparse view = view_of(lower);
-    analysis.reset(cholmod_analyze(&view, &session.common));
-    session.require_success();
+    session->common.nmethods = methods;
+    analysis = Factor(cholmod_analyze(&view, &session->common), {&session->common});
+    session->require_success();
   }
   [[nodiscard]] cholmod_factor& numeric() const {
     if (!factor) throw std::logic_error("SparseCholesky: no factorization");
     return *factor;
   }
   [[nodiscard]] Eigen::Map<const Eigen::VectorXi> order() const {
-    return {static_cast<const int*>(analysis->Perm), pattern.size()};
+    return {static_cast<const int*>(analysis->Perm), pattern.size};
   }
 
-  Session session;
+  std::shared_ptr<Session> session;
   Pattern pattern;
-  Factor analysis{nullptr, {&session.common}};
-  Factor factor{nullptr, {&session.common}};
+  Factor analysis{nullptr, {&session->common}};
+  Factor factor{nullptr, {&session->common}};
 };
 
-SparseCholesky::SparseCholesky(const Eigen::SparseMatrix<double>& lower) {
+SparseCholesky::SparseCholesky(const LowerTriangle& lower) {
   if (lower.rows() != lower.cols() || !lower.isCompressed())
     throw std::invalid_argument(fmt::format("SparseCholesky: lower is {} x {}{}, expected square and compressed", lower.rows(),
                                             lower.cols(), lower.isCompressed() ? "" : ", not compressed"));
@@ -192,16 +203,16 @@ SparseCholesky::~SparseCholesky() = default;
 SparseCholesky::SparseCholesky(SparseCholesky&&) noexcept = default;
 SparseCholesky& SparseCholesky::operator=(SparseCholesky&&) noexcept = default;
 
-void SparseCholesky::factorize(const Eigen::SparseMatrix<double>& lower) {
-  if (!cholmod_->pattern.is_that_of(lower))
+void SparseCholesky::factorize(const LowerTriangle& lower) {
+  if (!lower.isCompressed() || lower.rows() != lower.cols() || Pattern(lower) != cholmod_->pattern)
     throw std::invalid_argument("SparseCholesky::factorize: lower has another pattern than the one analysed");
-  cholmod_common* common = &cholmod_->session.common;
+  cholmod_common* common = &cholmod_->session->common;
   cholmod_->factor.reset();  // before the next: two of them would be most of the memory
   Factor factor(cholmod_copy_factor(cholmod_->analysis.get(), common), {common});
-  cholmod_->session.require_success();
+  cholmod_->session->require_success();
   cholmod_sparse view = view_of(lower);
   cholmod_factorize(&view, factor.get(), common);
-  cholmod_->session.require_success();
+  cholmod_->session->require_success();
   // From the one that failed on, CHOLMOD sets pivots to zero; those that are not finite it lets pass.
   const Lower L = lower_of(*factor);
   for (Eigen::Index j = 0; j < L.cols(); ++j) {
@@ -216,14 +227,14 @@ void SparseCholesky::factorize(const Eigen::SparseMatrix<double>& lower) {
 
 Eigen::VectorXd SparseCholesky::solve(const Eigen::VectorXd& b) const {
   cholmod_factor& L = cholmod_->numeric();
-  if (b.size() != cholmod_->pattern.size())
+  if (b.size() != cholmod_->pattern.size)
     throw std::invalid_argument(
-        fmt::format("SparseCholesky::solve: b has {} rows, expected {}", b.size(), cholmod_->pattern.size()));
+        fmt::format("SparseCholesky::solve: b has {} rows, expected {}", b.size(), cholmod_->pattern.size));
   cholmod_dense right = view_of(b);
-  cholmod_common* common = &cholmod_->session.common;
+  cholmod_common* common = &cholmod_->session->common;
   Eigen::VectorXd x(b.size());
   cholmod_dense* solution = cholmod_solve(CHOLMOD_A, &L, &right, common);
-  cholmod_->session.require_success();
+  cholmod_->session->require_success();
   x = Eigen::Map<const Eigen::VectorXd>(static_cast<const double*>(solution->x), b.size());
   cholmod_free_dense(&solution, common);
   return x;
@@ -236,13 +247,61 @@ double SparseCholesky::log_determinant() const {
   return 2.0 * sum;
 }
 
-SelectedInverse SparseCholesky::selected_inverse() const {
+namespace {
+
+// Largest eigenvalue of a symmetric positive definite operator, from below.
+template <class Apply>
+double largest_eigenvalue(Eigen::VectorXd v, int most, const Apply& apply) {
+  constexpr double kAtRest = 0.01;
+  double value = 0.0;
+  for (int i = 0; i < most; ++i) {
+    v /= v.norm();
+    const Eigen::VectorXd next = apply(v);
+    const double before = std::exchange(value, v.dot(next));
+    if (value - before < kAtRest * value) break;
+    v = next;
+  }
+  return value;
+}
+
+}  // namespace
+
+double SparseCholesky::condition(int most) const {
+  const Lower L = lower_of(cholmod_->numeric());
+  Eigen::VectorXd diagonal = Eigen::VectorXd::Zero(L.rows());
+  for (Eigen::Index j = 0; j < L.cols(); ++j)
+    for (Lower::InnerIterator e(L, j); e; ++e) diagonal(e.row()) += e.value() * e.value();
+  const Eigen::VectorXd scale = diagonal.cwiseSqrt();
+  std::mt19937 random(1);
+  const Eigen::VectorXd any =
+      Eigen::VectorXd::NullaryExpr(L.rows(), [&] { return static_cast<double>(random()) / std::mt19937::max() - 0.5; });
+  const double largest = largest_eigenvalue(any, most, [&](const Eigen::VectorXd& v) -> Eigen::VectorXd {
+    const Eigen::VectorXd half = L.transpose() * v.cwiseQuotient(scale);
+    return (L * half).cwiseQuotient(scale);
+  });
+  const double of_inverse = largest_eigenvalue(any, most, [&](const Eigen::VectorXd& v) -> Eigen::VectorXd {
+    Eigen::VectorXd x = v.cwiseProduct(scale);
+    L.triangularView<Eigen::Lower>().solveInPlace(x);
+    L.transpose().triangularView<Eigen::Upper>().solveInPlace(x);
+    return x.cwiseProduct(scale);
+  });
+  return largest * of_inverse;
+}
+
+SelectedInverse SparseCholesky::invert() {
+  cholmod_factor& Z = cholmod_->numeric();
+  invert_in_place(Z);
   SelectedInverse inverse;
-  inverse.lower_ = lower_of(cholmod_->numeric());
-  invert_in_place(inverse.lower_);
+  const auto* start = static_cast<const int*>(Z.p);
+  const auto entries = static_cast<std::size_t>(start[Z.n]);
+  inverse.starts_ = {start, Z.n + 1};
+  inverse.rows_ = {static_cast<const int*>(Z.i), entries};
+  inverse.values_ = {static_cast<const double*>(Z.x), entries};
   const auto order = cholmod_->order();
   inverse.position_.resize(order.size());
   for (int k = 0; k < order.size(); ++k) inverse.position_(order(k)) = k;
+  const auto free = [session = cholmod_->session](cholmod_factor* factor) { cholmod_free_factor(&factor, &session->common); };
+  inverse.factor_ = std::shared_ptr<cholmod_factor>(cholmod_->factor.release(), free);
   return inverse;
 }
 
@@ -256,10 +315,10 @@ double SelectedInverse::operator()(Eigen::Index i, Eigen::Index j) const {
   const auto inside = [this](Eigen::Index k) { return k >= 0 && k < position_.size(); };
   if (inside(i) && inside(j)) {
     const auto [column, row] = std::minmax({position_(i), position_(j)});
-    const int* begin = lower_.innerIndexPtr() + lower_.outerIndexPtr()[column];
-    const int* end = lower_.innerIndexPtr() + lower_.outerIndexPtr()[column + 1];
-    const int* at = std::lower_bound(begin, end, row);
-    if (at != end && *at == row) return lower_.valuePtr()[at - lower_.innerIndexPtr()];
+    const auto begin = rows_.begin() + starts_[static_cast<std::size_t>(column)];
+    const auto end = rows_.begin() + starts_[static_cast<std::size_t>(column) + 1];
+    const auto at = std::lower_bound(begin, end, row);
+    if (at != end && *at == row) return values_[static_cast<std::size_t>(at - rows_.begin())];
   }
   throw std::out_of_range(fmt::format("SelectedInverse: ({}, {}) is not in the pattern of the factor", i, j));
 }

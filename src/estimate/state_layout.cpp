@@ -58,6 +58,7 @@ StateLayout::StateLayout(const noise::ImuErrorModel& model, const Eigen::Matrix3
   if (auxiliary.lever_arm_sd_m > 0.0) lever_arm_ = add_auxiliary("lever_arm", auxiliary.lever_arm_sd_m, 0.0, 3);
   if (auxiliary.time_offset_sd_s > 0.0) time_offset_ = add_auxiliary("gnss_time_offset", auxiliary.time_offset_sd_s, 0.0, 1);
   if (auxiliary.mounting_sd > 0.0) mounting_ = add_auxiliary("vehicle_mounting", auxiliary.mounting_sd, 0.0, 2);
+  if (auxiliary.base_offset_sd_m > 0.0) base_offset_ = add_auxiliary("base_offset", auxiliary.base_offset_sd_m, 0.0, 3);
   const CorrelatedGnss& gnss = auxiliary.correlated_gnss;
   if (gnss.horizontal_m > 0.0 || gnss.vertical_m > 0.0) {
     gnss_error_ = add_auxiliary("gnss_error_horizontal", gnss.horizontal_m, 1.0 / gnss.time_s, 2);

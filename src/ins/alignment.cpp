@@ -28,6 +28,7 @@ constexpr double kSearch = 600.0, kSearchStep = 20.0;   // s
 constexpr double kStandstillVelocitySd = 0.02;          // m/s; an engine shakes, a rotor lifts
 constexpr double kForceError = 0.02;                    // m/s^2, of attitude and accelerometer bias together
 constexpr double kMinForceBias = 1e-3;                  // m/s^2; no accelerometer is better, nor is gravity known better
+constexpr double kLeastBiasSd = 1e-5;                   // rad/s; what stands on wheels or legs may still turn by as much
 
 const char* const kGiveStart =
     "Give the state under `start:` (time_s, position_deg_m, velocity_mps, attitude_deg, sd), or start the recording earlier or "
@@ -220,7 +221,7 @@ InitialState from_standstill(const AlignmentInput& input, const Span& span, cons
   } else {
     // Earth's rate is part of what stands still, less its horizontal share, whose direction in the body is not known yet.
     const Eigen::Vector3d bias = means.rate - C_level.transpose() * Eigen::Vector3d(0.0, 0.0, omega_ie_n.z());
-    const double bias_sd = std::hypot(rate_sd, horizontal) + 1e-5;
+    const double bias_sd = std::hypot(rate_sd, horizontal) + kLeastBiasSd;
     const auto heading = heading_from_motion(input, span, period.last, bias, bias_sd, vehicle_forward);
     require_usable(heading, span, vehicle_forward);
     yaw = yaw_towards(C_level, heading->C_b_n);
@@ -231,6 +232,7 @@ InitialState from_standstill(const AlignmentInput& input, const Span& span, cons
   const Eigen::Matrix3d C_b_n = about_down(yaw) * C_level;
   state.sd_attitude_n = {tilt_sd, tilt_sd, yaw_sd};
   state.gyro_bias = means.rate - C_b_n.transpose() * omega_ie_n;
+  state.gyro_bias_sd = std::hypot(rate_sd, horizontal * std::min(yaw_sd, 1.0)) + kLeastBiasSd;
   const Eigen::Matrix3d C_b_e = C_n_e * C_b_n;
   state.nav.q_b_e = Eigen::Quaterniond(C_b_e).normalized();
   state.nav.r_eb_e = antenna.r_ea_e - C_b_e * input.lever_arm_b;

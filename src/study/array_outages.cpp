@@ -159,7 +159,9 @@ std::vector<OutageResult> run_array_seed(const ArrayOutagePlan& plan, const Erro
   static_cast<void>(array::take_off_relative_offsets(levelled, kOffsetWindow));
   std::vector<OutageResult> results;
   const auto process = [&](FilterInput input) {
-    results.push_back(solve_outage(plan.scenario, mission.truth(), {std::move(input.imu), truth.gnss}, input.model, outage));
+    results.push_back(solve_outages(plan.scenario, mission.truth(), {std::move(input.imu), truth.gnss}, {"", input.model},
+                                    outage.start, {outage})
+                          .front());
     if (seed > plan.first_seed) results.back().forward.series = results.back().smoothed->series = {};
   };
   for (std::size_t k = 0; k < plan.gyro.size(); ++k)

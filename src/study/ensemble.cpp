@@ -6,7 +6,6 @@
 #include <tbb/task_arena.h>
 
 #include <algorithm>
-#include <cmath>
 #include <mutex>
 
 #include "coast/ins/mounting.hpp"
@@ -17,140 +16,144 @@ namespace coast::study {
 
 namespace {
 
-std::vector<ElapsedOutage> elapsed_outages(const EnsemblePlan& plan, const simulate::ErrorFreeMission& mission) {
-  std::vector<ElapsedOutage> outages = plan.outages;
-  if (outages.empty())
+std::vector<OutageGroup> groups_of(const EnsemblePlan& plan, const simulate::ErrorFreeMission& mission) {
+  std::vector<OutageGroup> groups = plan.groups;
+  if (groups.empty())
     for (const simulate::StudiedOutage& own : mission.outages())
-      outages.push_back({own.start - plan.scenario.start, own.duration});
-  if (outages.empty())
+      groups.push_back({own.duration, {own.start - plan.scenario.start}});
+  if (groups.empty())
     throw InputError(
         {"", 0, "no outage, neither in the study nor in its scenario", "outages: [{start_s: .., duration_s: ..}]", ""});
   const double end = plan.scenario.motion.duration;
-  for (const ElapsedOutage& outage : outages)
-    if (!(outage.start_s > 0.0 && outage.duration_s > 0.0 && outage.start_s + outage.duration_s < end))
-      throw InputError({"", 0, fmt::format("an outage from {:.3f} s for {:g} s", outage.start_s, outage.duration_s),
-                        fmt::format("one within the scenario's {:g} s", end),
-                        "start_s counts from the start of the scenario."});
-  return outages;
+  for (const OutageGroup& group : groups)
+    for (const double start : group.starts_s)
+      if (!(start > 0.0 && group.duration_s > 0.0 && start + group.duration_s < end))
+        throw InputError({"", 0, fmt::format("an outage from {:.3f} s for {:g} s", start, group.duration_s),
+                          fmt::format("one within the scenario's {:g} s", end),
+                          "start_s counts from the start of the scenario."});
+  return groups;
 }
 
 /// What every recording of the ensemble shares.
 struct Shared {
   const EnsemblePlan& plan;
   const simulate::ErrorFreeMission mission;
-  const std::vector<ElapsedOutage> elapsed;
-  std::vector<Outage> outages;
+  const std::vector<OutageGroup> groups;
+  geo::GpsTime first_outage;
 
   explicit Shared(const EnsemblePlan& p)
       : plan(p),
         mission(p.scenario, static_cast<int>(tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism))),
-        elapsed(elapsed_outages(p, mission)) {
-    for (const ElapsedOutage& outage : elapsed) outages.push_back({p.scenario.start + outage.start_s, outage.duration_s});
+        groups(groups_of(p, mission)) {
+    double first = p.scenario.motion.duration;
+    for (const OutageGroup& group : groups) first = std::min(first, *std::ranges::min_element(group.starts_s));
+    first_outage = p.scenario.start + first;
   }
 };
 
-// One seed of one case: simulated once, processed with every filter. [filter][outage]
-std::vector<std::vector<OutageResult>> run_seed(const Shared& shared, const EnsembleCase& which, std::uint64_t seed) {
-  try {
-    simulate::ErrorFreeMission::Recordings recordings = shared.mission.recorded(which.truth.model, seed);
-    ins::to_body(recordings.imu, ins::C_s_b(shared.plan.scenario.mounting));
-    std::vector<std::vector<OutageResult>> results;
-    for (const NamedModel& filter : which.filters) {
-      results.emplace_back();
-      for (const Outage& outage : shared.outages)
-        results.back().push_back(solve_outage(shared.plan.scenario, shared.mission.truth(), recordings, filter.model, outage));
+/// Of one recording and one of its filters, the outages that are not known.
+struct Task {
+  std::vector<StudyPlace> places;
+  std::vector<Outage> outages;
+};
+
+class Ensemble {
+ public:
+  Ensemble(const EnsemblePlan& plan, const StudyJournal& journal) : shared_(plan), journal_(journal) {
+    result_.groups = shared_.groups;
+    result_.seeds = plan.seeds;
+    for (const EnsembleCase& which : plan.cases) {
+      first_run_.push_back(result_.runs.size());
+      for (const NamedModel& filter : which.filters) {
+        result_.runs.push_back({which.truth.name, filter.name, {}});
+        for (const OutageGroup& group : shared_.groups)
+          result_.runs.back().outages.emplace_back(group.starts_s.size() * plan.seeds);
+      }
     }
-    return results;
-  } catch (const NumericalError& error) {
-    throw NumericalError(fmt::format("seed {} of truth {}", seed, which.truth.name), "", error.what());
+  }
+
+  void run(std::size_t recording, const std::function<void(double)>& progress);
+  [[nodiscard]] std::size_t recordings() const { return shared_.plan.seeds * shared_.plan.cases.size(); }
+  [[nodiscard]] StudyResult take() { return std::move(result_); }
+
+ private:
+  [[nodiscard]] Task task(std::size_t run, std::size_t seed);
+  void solve(const EnsembleCase& which, std::size_t first_run, std::size_t seed);
+  [[nodiscard]] OutageResult& at(const StudyPlace& place) { return result_.runs[place.run].outages[place.group][place.outage]; }
+
+  const Shared shared_;
+  const StudyJournal& journal_;
+  StudyResult result_;
+  std::vector<std::size_t> first_run_;  ///< of each case
+  std::mutex reporting_;
+  std::size_t done_ = 0;
+};
+
+// The first outage of a group is run in any case: its series is drawn, and no journal has it.
+Task Ensemble::task(std::size_t run, std::size_t seed) {
+  Task task;
+  for (std::size_t g = 0; g < shared_.groups.size(); ++g)
+    for (std::size_t i = 0; i < shared_.groups[g].starts_s.size(); ++i) {
+      const StudyPlace place{run, g, i * shared_.plan.seeds + seed};
+      const Outage outage{shared_.plan.scenario.start + shared_.groups[g].starts_s[i], shared_.groups[g].duration_s};
+      if (place.outage > 0 && journal_.known) {
+        const std::scoped_lock lock(reporting_);
+        if (const std::optional<OutageResult> known = journal_.known(place)) {
+          at(place) = *known;
+          at(place).outage = outage;
+          continue;
+        }
+      }
+      task.places.push_back(place);
+      task.outages.push_back(outage);
+    }
+  return task;
+}
+
+void Ensemble::solve(const EnsembleCase& which, std::size_t first_run, std::size_t seed) {
+  std::optional<simulate::ErrorFreeMission::Recordings> recordings;
+  for (std::size_t f = 0; f < which.filters.size(); ++f) {
+    const Task left = task(first_run + f, seed);
+    if (left.outages.empty()) continue;
+    if (!recordings) {
+      recordings = shared_.mission.recorded(which.truth.model, shared_.plan.first_seed + seed);
+      ins::to_body(recordings->imu, ins::C_s_b(shared_.plan.scenario.mounting));
+    }
+    std::vector<OutageResult> results = solve_outages(shared_.plan.scenario, shared_.mission.truth(), *recordings,
+                                                      which.filters[f], shared_.first_outage, left.outages);
+    for (std::size_t i = 0; i < results.size(); ++i) {
+      if (left.places[i].outage > 0) results[i].forward.series = results[i].smoothed->series = {};
+      if (journal_.finished) {
+        const std::scoped_lock lock(reporting_);
+        journal_.finished(left.places[i], results[i]);
+      }
+      at(left.places[i]) = std::move(results[i]);
+    }
   }
 }
 
-EnsembleResult empty_result(const Shared& shared) {
-  EnsembleResult result;
-  result.outages = shared.elapsed;
-  for (const EnsembleCase& which : shared.plan.cases)
-    for (const NamedModel& filter : which.filters)
-      result.runs.push_back(
-          {which.truth.name, filter.name, std::vector(shared.outages.size(), std::vector<OutageResult>(shared.plan.seeds))});
-  return result;
+void Ensemble::run(std::size_t recording, const std::function<void(double)>& progress) {
+  const std::size_t seed = recording / shared_.plan.cases.size();
+  const std::size_t which = recording % shared_.plan.cases.size();
+  try {
+    // A thread that waits inside one recording must not begin another: each needs its memory.
+    tbb::this_task_arena::isolate([&] { solve(shared_.plan.cases[which], first_run_[which], seed); });
+  } catch (const NumericalError& error) {
+    throw NumericalError(
+        fmt::format("seed {} of truth {}", shared_.plan.first_seed + seed, shared_.plan.cases[which].truth.name), "",
+        error.what());
+  }
+  if (!progress) return;
+  const std::scoped_lock lock(reporting_);
+  progress(static_cast<double>(++done_) / static_cast<double>(recordings()));
 }
 
 }  // namespace
 
-EnsembleResult run_ensemble(const EnsemblePlan& plan, const std::function<void(double)>& progress) {
-  const Shared shared(plan);
-  EnsembleResult result = empty_result(shared);
-  std::vector<std::size_t> first_run;  // of each case
-  std::size_t runs = 0;
-  for (const EnsembleCase& which : plan.cases) {
-    first_run.push_back(runs);
-    runs += which.filters.size();
-  }
-  const std::size_t recordings = plan.seeds * plan.cases.size();
-  std::size_t done = 0;
-  std::mutex reporting;
-  tbb::parallel_for(std::size_t{0}, recordings, [&](std::size_t i) {
-    const std::size_t seed = i / plan.cases.size();
-    const std::size_t which = i % plan.cases.size();
-    std::vector<std::vector<OutageResult>> of_seed;
-    // A thread that waits inside one recording must not begin another: each needs its memory.
-    tbb::this_task_arena::isolate([&] { of_seed = run_seed(shared, plan.cases[which], plan.first_seed + seed); });
-    for (std::size_t filter = 0; filter < of_seed.size(); ++filter)
-      for (std::size_t outage = 0; outage < of_seed[filter].size(); ++outage) {
-        OutageResult& slot = result.runs[first_run[which] + filter].outages[outage][seed];
-        slot = std::move(of_seed[filter][outage]);
-        if (seed > 0) slot.forward.series = slot.smoothed->series = {};
-      }
-    if (!progress) return;
-    const std::scoped_lock lock(reporting);
-    progress(static_cast<double>(++done) / static_cast<double>(recordings));
-  });
-  return result;
-}
-
-std::vector<double> drifts(std::span<const OutageResult> outages, DriftMeasure measure, bool smoothed) {
-  std::vector<double> values;
-  for (const OutageResult& outage : outages) {
-    const OutageErrors& errors = smoothed ? *outage.smoothed : outage.forward;
-    values.push_back(measure == DriftMeasure::kHorizontal ? errors.horizontal_max_m
-                                                          : errors.max_m(static_cast<Eigen::Index>(measure)));
-  }
-  return values;
-}
-
-Spread spread_of(const std::vector<double>& absolute_errors) {
-  double square = 0.0;
-  for (const double error : absolute_errors) square += error * error;
-  const double rms = std::sqrt(square / static_cast<double>(absolute_errors.size()));
-  return {quantile(absolute_errors, 0.5), rms, quantile(absolute_errors, 0.95)};
-}
-
-EnsembleDrift ensemble_drift(std::span<const OutageResult> outages, bool smoothed) {
-  EnsembleDrift drift;
-  double inside = 0.0;
-  double tested = 0.0;
-  std::array<std::vector<double>, 3> end;
-  for (const OutageResult& outage : outages) {
-    const OutageErrors& errors = smoothed ? *outage.smoothed : outage.forward;
-    for (Eigen::Index axis = 0; axis < 3; ++axis) end[static_cast<std::size_t>(axis)].push_back(std::abs(errors.end_m(axis)));
-    drift.predicted_end_rms_m += errors.sigma_end_m.cwiseAbs2() / static_cast<double>(outages.size());
-    inside += static_cast<double>(errors.inside_95);
-    tested += static_cast<double>(errors.tested);
-  }
-  for (std::size_t axis = 0; axis < 3; ++axis) {
-    drift.largest[axis] = spread_of(drifts(outages, static_cast<DriftMeasure>(axis), smoothed));
-    drift.end[axis] = spread_of(end[axis]);
-  }
-  drift.predicted_end_rms_m = drift.predicted_end_rms_m.cwiseSqrt();
-  drift.horizontal = spread_of(drifts(outages, DriftMeasure::kHorizontal, smoothed));
-  drift.inside_95 = tested > 0.0 ? inside / tested : 0.0;
-  return drift;
-}
-
-double gyro_noise_drift(geo::Psd gyro_density, double duration_s) {
-  constexpr double kGravity = 9.80665;  // m/s^2; the drift is wanted to two digits
-  return kGravity * std::sqrt(gyro_density.value * std::pow(duration_s, 5) / 20.0);
+StudyResult run_ensemble(const EnsemblePlan& plan, const std::function<void(double)>& progress, const StudyJournal& journal) {
+  Ensemble ensemble(plan, journal);
+  tbb::parallel_for(std::size_t{0}, ensemble.recordings(), [&](std::size_t i) { ensemble.run(i, progress); });
+  return ensemble.take();
 }
 
 }  // namespace coast::study

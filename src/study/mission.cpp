@@ -2,8 +2,12 @@
 
 #include <fmt/format.h>
 
+#include <Eigen/Cholesky>
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <iterator>
+#include <stdexcept>
 
 #include "coast/geo/earth.hpp"
 #include "coast/geo/rotation.hpp"
@@ -18,6 +22,7 @@ namespace {
 
 constexpr double kRefineWindow = 300.0;  // s that the start is refined over
 constexpr double kFitWindow = 1200.0;    // s that noise is fitted over
+constexpr double kShortestFit = 100.0;   // s: fewer say too little of correlated errors
 
 std::function<void(double)> stage(const Progress& progress, const char* what) {
   if (!progress) return {};
@@ -70,6 +75,19 @@ void set_gyro_bias(const estimate::StateLayout& layout, Eigen::Vector3d bias_b, 
   }
 }
 
+// A bias seen standing still is known far better than a turn-on bias. At its prior, the heading of a consumer IMU (1 deg/s)
+// would be unknown before it first moves, and no filter linear in the attitude finds it again.
+void know_gyro_bias(const estimate::StateLayout& layout, double sd, Eigen::MatrixXd& P) {
+  Eigen::MatrixXd H = Eigen::MatrixXd::Zero(3, layout.size());
+  for (const estimate::StateLayout::SensorBlock& block : layout.sensors())
+    if (block.sensor == noise::Sensor::kGyro && !block.signal_b)
+      H.middleCols(block.offset, block.size) += block.response_b * block.output;
+  const Eigen::MatrixXd PHt = P * H.transpose();
+  const Eigen::Matrix3d S = H * PHt + sd * sd * Eigen::Matrix3d::Identity();
+  P -= PHt * S.llt().solve(PHt.transpose());
+  P = 0.5 * (P + P.transpose()).eval();
+}
+
 }  // namespace
 
 PreparedMission::PreparedMission(record::ImuRecording imu, record::GnssRecording gnss, Setup setup, const Progress& progress)
@@ -100,7 +118,9 @@ void PreparedMission::fit_and_adopt(const Progress& progress) {
   refine_start(progress);
   const estimate::NoiseAdjustment first = estimate::starting_point(stated, *setup_.noise_fit);
   estimate::NoiseAdjustment from = first;
-  for (const double window : {kRefineWindow, kFitWindow}) {
+  const double before_outages = setup_.refine_before ? *setup_.refine_before - start_.nav.t : kFitWindow;
+  const double longest = before_outages < kShortestFit ? kFitWindow : std::min(kFitWindow, before_outages);
+  for (const double window : {std::min(kRefineWindow, longest), longest}) {
     setup_.model = stated_model;
     setup_.filter = stated;
     noise_fit_ = fit(*setup_.noise_fit, from, window, progress);
@@ -167,12 +187,14 @@ void PreparedMission::align(const Progress& progress) {
 estimate::FilterState PreparedMission::start_state(const estimate::ForwardFilter& filter) const {
   estimate::FilterState state =
       filter.initial_state(start_.nav, start_.sd_position_n, start_.sd_velocity_n, start_.sd_attitude_n);
+  if (!setup_.start) estimate::tie_position_to_fixes(filter.layout(), state.P);
   // Sensor states come first in every layout of one model; auxiliary states start at zero.
   const Eigen::Index sensors = filter.layout().sensor_end();
   if (start_sensor_errors_.size() == sensors)
     state.x.head(sensors) = start_sensor_errors_;
   else
     set_gyro_bias(filter.layout(), start_.gyro_bias, state);
+  if (start_.gyro_bias_sd) know_gyro_bias(filter.layout(), *start_.gyro_bias_sd, state.P);
   return state;
 }
 
@@ -199,8 +221,12 @@ void PreparedMission::refine_start(const Progress& progress) {
   if (setup_.start) return;  // what the user gave stays
   constexpr int kRounds = 4;
   geo::GpsTime end = start_.nav.t + kRefineWindow;
-  if (setup_.refine_before) end = std::min(end, *setup_.refine_before);
-  const estimate::ForwardFilter filter(*mission_, setup_.model, setup_.filter);
+  estimate::FilterOptions options = setup_.filter;
+  if (setup_.refine_before) {
+    end = std::min(end, *setup_.refine_before);
+    options.withheld.push_back({*setup_.refine_before, *setup_.refine_before + kRefineWindow});  // the fix at the end too
+  }
+  const estimate::ForwardFilter filter(*mission_, setup_.model, options);
   for (int round = 0; round < kRounds; ++round) {
     if (progress) progress("refining the start", static_cast<double>(round) / kRounds);
     estimate::KnotStore first;
@@ -249,7 +275,21 @@ estimate::FilterState PreparedMission::far_end(const estimate::FilterState& last
   const estimate::ForwardFilter filter(*mission_, setup_.model, setup_.filter);
   estimate::FilterState state =
       filter.initial_state(last.nav, start_.sd_position_n, start_.sd_velocity_n, start_.sd_attitude_n);
+  if (!setup_.start) estimate::tie_position_to_fixes(filter.layout(), state.P);
   state.x = last.x;
+  return state;
+}
+
+estimate::FilterState PreparedMission::ignorant_end(const estimate::FilterState& last) const {
+  constexpr double kTimes = 10.0;
+  const estimate::ForwardFilter filter(*mission_, setup_.model, setup_.filter);
+  const estimate::StateLayout& layout = filter.layout();
+  estimate::FilterState state = far_end(last);
+  state.P.topLeftCorner<estimate::kNav, estimate::kNav>() +=
+      kTimes * kTimes * last.P.topLeftCorner<estimate::kNav, estimate::kNav>();
+  const auto others = layout.size() - estimate::kNav;
+  estimate::BlockTransitions(layout).over(last.nav.t - start_.nav.t).propagate(state.P.bottomRightCorner(others, others));
+  state.x.segment(layout.sensor_end(), layout.carrier_slots() - layout.sensor_end()).setZero();
   return state;
 }
 
@@ -288,32 +328,62 @@ void note_batch(const estimate::BatchSolution& batch, const std::vector<estimate
   events.push_back(
       {record::Event::Severity::kInfo, "batch",
        fmt::format("batch solution after {} iterations; {} GNSS positions left out or at less than half their weight",
-                   batch.cost.size() - 1, doubted),
+                   batch.report.cost.size(), doubted),
        end, 1});
-  if (!batch.converged)
+  constexpr double kTolerable = 0.01;
+  if (batch.report.rounding() > kTolerable)
+    events.push_back(
+        {record::Event::Severity::kWarning, "batch_ill_conditioned",
+         fmt::format("the normal equations of the batch have the condition number {:.0e}: its states are off by some {:.2g} of "
+                     "their sigmas and these by as much of themselves; take `smoother: rts`, which does not need them",
+                     batch.report.condition, batch.report.rounding()),
+         end, 1});
+  if (!batch.report.converged)
     events.push_back({record::Event::Severity::kWarning, "batch_not_converged",
                       "the batch solution has not come to rest: do not trust it where it differs from `smoother: rts`", end,
                       1});
 }
 
+// The solution is about the lever arm and the time offset that the preparation found; people ask what is wrong with theirs.
+void tell_against_configuration(const PreparedMission& mission, std::vector<estimate::MissionUnknown>& unknowns) {
+  const Eigen::Vector3d moved = mission.mission().lever_arm_b - mission.setup().lever_arm_b;
+  const std::array<const char*, 3> components{"lever_arm forward", "lever_arm right", "lever_arm down"};
+  for (estimate::MissionUnknown& unknown : unknowns) {
+    for (std::size_t i = 0; i < 3; ++i)
+      if (unknown.name == components[i]) unknown.estimate += moved(static_cast<Eigen::Index>(i));
+    if (unknown.name == "gnss_time_offset") unknown.estimate += mission.mission().time_offset_s - mission.setup().time_offset_s;
+  }
+}
+
 std::vector<estimate::SmoothedKnot> smoothed(const PreparedMission& mission, const estimate::FilterOptions& options,
                                              const estimate::FilterState& start,
                                              const std::vector<estimate::KnotMeasurement>& measurements,
-                                             const SolutionOutputs& outputs, const Progress& progress, Solution& solution) {
+                                             const SolutionOutputs& outputs, const Progress& progress,
+                                             const estimate::BackwardKnots* backward, Solution& solution) {
   const estimate::StateLayout& layout = solution.filter->layout();
+  if (backward != nullptr) {
+    estimate::Combination both =
+        estimate::combine(solution.knots, *backward, layout, stage(progress, "combining forward and backward"));
+    std::ranges::move(both.events, std::back_inserter(solution.forward.events));
+    return std::move(both.knots);
+  }
   if (!mission.setup().batch)
     return estimate::smooth(solution.knots, layout, stage(progress, "smoothing backward"), outputs.states);
   estimate::BatchSolution batch =
       estimate::smooth_batch(mission.mission(), layout, options, start, solution.knots, measurements, *mission.setup().batch,
                              stage(progress, "solving the batch"), outputs.states);
   note_batch(batch, measurements, solution.forward.events);
+  solution.batch = std::move(batch.report);
+  tell_against_configuration(mission, solution.batch->unknowns);
   return std::move(batch.smoothed);
 }
 
 }  // namespace
 
 Solution solve(const PreparedMission& mission, const estimate::FilterOptions& options, bool smooth,
-               const SolutionOutputs& outputs, const Progress& progress, const std::optional<estimate::FilterState>& carried) {
+               const SolutionOutputs& outputs, const Progress& progress, const std::optional<estimate::FilterState>& carried,
+               const estimate::BackwardKnots* backward) {
+  if (carried && backward != nullptr) throw std::invalid_argument("solve: a combined solution of more than one pass");
   Solution solution;
   solution.filter = std::make_unique<estimate::ForwardFilter>(mission.mission(), mission.model(), options);
   const estimate::FilterState start = mission.start_state(*solution.filter);
@@ -336,11 +406,25 @@ Solution solve(const PreparedMission& mission, const estimate::FilterOptions& op
     for_smoother.progress = stage(progress, "filtering forward for the smoother");
     static_cast<void>(solution.filter->run(smoothed_start, for_smoother));
   }
-  solution.smoothed = smoothed(mission, options, smoothed_start, measurements, outputs, progress, solution);
+  solution.smoothed = smoothed(mission, options, smoothed_start, measurements, outputs, progress, backward, solution);
   if (outputs.smoothed)
     estimate::emit_smoothed(mission.mission(), solution.filter->layout(), solution.knots, solution.smoothed, outputs.smoothed,
                             stage(progress, "writing the smoothed trajectory"));
   return solution;
+}
+
+estimate::BackwardKnots backward_knots(PreparedMission& mission, const estimate::FilterOptions& options,
+                                       const estimate::KnotSampling& states, const Progress& progress) {
+  const estimate::ForwardFilter filter(mission.mission(), mission.model(), options);
+  estimate::FilterOptions same_knots = options;
+  estimate::FilterOutputs outputs;
+  outputs.at_knots = [&](const estimate::FilterState& state) { same_knots.knots_at.push_back(state.nav.t); };
+  outputs.progress = stage(progress, "filtering forward");
+  const estimate::FilterState begin = mission.ignorant_end(filter.run(mission.start_state(filter), outputs).last);
+  estimate::BackwardKnots knots(filter.layout(), same_knots.knots_at, begin, states);
+  static_cast<void>(mission.run_backward(
+      same_knots, begin, [&](const estimate::FilterState& state) { knots.add(state); }, progress));
+  return knots;
 }
 
 estimate::FilterState carried_start(PreparedMission& mission, const estimate::FilterOptions& options, int passes,

@@ -1,11 +1,7 @@
 #include "coast/study/outage.hpp"
 
-#include <tbb/parallel_for.h>
-
 #include <algorithm>
-#include <atomic>
 #include <cmath>
-#include <mutex>
 
 #include "coast/geo/earth.hpp"
 #include "coast/study/interpolation.hpp"
@@ -15,7 +11,6 @@ namespace coast::study {
 namespace {
 
 constexpr double kSeriesInterval = 0.1;  // s, of the errors kept
-constexpr double kSeriesMargin = 10.0;   // s before and after the outage, for figures
 
 }  // namespace
 
@@ -34,7 +29,7 @@ OutageRecorder::OutageRecorder(const Outage& outage, const record::Trajectory& r
 
 void OutageRecorder::add(const record::TrajectoryEpoch& epoch) {
   const geo::GpsTime t = epoch.nav.t;
-  if (t < outage_.start - kSeriesMargin || t > outage_.span().to + kSeriesMargin) return;
+  if (t < outage_.start - kMargin || t > outage_.span().to + kMargin) return;
   compare_with_fixes(epoch);
   const bool inside = outage_.start <= t && t < next_used_fix_;
   const bool due = series_.empty() || t - series_.back().t >= kSeriesInterval - 1e-6;
@@ -107,61 +102,6 @@ std::vector<Outage> outages_of(const OutageSweep& sweep, geo::GpsTime from, geo:
       outages.push_back({from + start, duration, sweep.satellites_left});
   }
   return outages;
-}
-
-namespace {
-
-OutageResult run_outage(const estimate::Mission& mission, const noise::ImuErrorModel& model, estimate::FilterOptions options,
-                        const estimate::Knot& from, const record::Trajectory& reference, const Eigen::Vector3d& lever_arm_b,
-                        const Outage& outage, double tail_s) {
-  options.withheld.push_back(outage.span());
-  const estimate::ForwardFilter filter(mission, model, options);
-  OutageRecorder forward(outage, reference, lever_arm_b, mission);
-  estimate::KnotStore knots;
-  estimate::FilterOutputs outputs;
-  outputs.knots = &knots;
-  outputs.epochs = [&](const record::TrajectoryEpoch& epoch) { forward.add(epoch); };
-  static_cast<void>(filter.resume(from, outage.span().to + tail_s, outputs));
-  OutageRecorder smoothed(outage, reference, lever_arm_b, mission);
-  estimate::emit_smoothed(mission, filter.layout(), knots, estimate::smooth(knots, filter.layout()),
-                          [&](const record::TrajectoryEpoch& epoch) { smoothed.add(epoch); });
-  return {outage, forward.errors(), smoothed.errors()};
-}
-
-// Last knot at or before the outage, with a second to spare for the figures' lead-in.
-std::size_t knot_before(const estimate::KnotStore& knots, geo::GpsTime t) {
-  std::size_t low = 0;
-  std::size_t high = knots.size();
-  while (high - low > 1) {
-    const std::size_t middle = (low + high) / 2;
-    (knots.time(middle) <= t ? low : high) = middle;
-  }
-  return low;
-}
-
-}  // namespace
-
-std::vector<OutageResult> run_outages(const estimate::Mission& mission, const noise::ImuErrorModel& model,
-                                      const estimate::FilterOptions& options, const estimate::KnotStore& knots,
-                                      const record::Trajectory& reference, const Eigen::Vector3d& lever_arm_b,
-                                      const std::vector<Outage>& outages, double tail_s,
-                                      const std::function<void(double)>& progress) {
-  std::vector<OutageResult> results(outages.size());
-  std::atomic<std::size_t> done{0};
-  std::mutex shared;  // the store's file and the progress line
-  tbb::parallel_for(std::size_t{0}, outages.size(), [&](std::size_t i) {
-    estimate::Knot from;
-    {
-      const std::scoped_lock lock(shared);
-      from = knots.at(knot_before(knots, outages[i].start - kSeriesMargin));
-    }
-    results[i] = run_outage(mission, model, options, from, reference, lever_arm_b, outages[i], tail_s);
-    ++done;
-    if (!progress) return;
-    const std::scoped_lock lock(shared);
-    progress(static_cast<double>(done) / static_cast<double>(outages.size()));
-  });
-  return results;
 }
 
 }  // namespace coast::study

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <numeric>
 #include <stdexcept>
 
 namespace coast::study {
@@ -62,14 +63,33 @@ double sign_test(std::size_t first, std::size_t second) {
   return std::min(1.0, 2.0 * tail);
 }
 
-PairedRatio paired_ratio(std::span<const double> first, std::span<const double> second) {
-  if (first.size() != second.size())
-    throw std::invalid_argument(fmt::format("paired_ratio: {} and {} errors are no pairs", first.size(), second.size()));
+namespace {
+
+/// As many independent stretches tell as much of a mean: n^2 / sum_ij w_ij.
+double independent_stretches(std::vector<double> times, double reach) {
+  std::ranges::sort(times);
+  const auto n = static_cast<double>(times.size());
+  double weights = n;
+  for (std::size_t i = 0; i < times.size(); ++i)
+    for (std::size_t j = i + 1; j < times.size() && times[j] - times[i] < reach; ++j)
+      weights += 2.0 * (1.0 - (times[j] - times[i]) / reach);
+  return n * n / weights;
+}
+
+}  // namespace
+
+PairedRatio paired_ratio(std::span<const double> first, std::span<const double> second, std::span<const double> times,
+                         double reach) {
+  if (first.size() != second.size() || first.size() != times.size())
+    throw std::invalid_argument(
+        fmt::format("paired_ratio: {} and {} errors at {} times are no pairs", first.size(), second.size(), times.size()));
   PairedRatio result;
   std::vector<double> logs;
+  std::vector<double> when;
   for (std::size_t i = 0; i < first.size(); ++i) {
     if (!(first[i] > 0.0 && second[i] > 0.0)) continue;
     logs.push_back(std::log(second[i] / first[i]));
+    when.push_back(times[i]);
     if (second[i] < first[i]) ++result.second_smaller;
     if (first[i] < second[i]) ++result.first_smaller;
   }
@@ -80,13 +100,23 @@ PairedRatio paired_ratio(std::span<const double> first, std::span<const double> 
   double mean = 0.0;
   for (const double d : logs) mean += d / n;
   result.ratio = result.low = result.high = std::exp(mean);
-  if (logs.size() < 2) return result;
-  double variance = 0.0;
-  for (const double d : logs) variance += (d - mean) * (d - mean) / (n - 1.0);
-  const double half = student_t_quantile(0.975, static_cast<int>(logs.size()) - 1) * std::sqrt(variance / n);
+  constexpr double kRounding = 1e-9;
+  const double stretches = independent_stretches(when, reach);
+  if (stretches < 1.0 + kRounding) return result;
+  double squares = 0.0;
+  for (const double d : logs) squares += (d - mean) * (d - mean);
+  const double variance = squares / n / (stretches - 1.0);
+  const int dof = std::max(1, static_cast<int>(stretches + kRounding) - 1);
+  const double half = student_t_quantile(0.975, dof) * std::sqrt(variance);
   result.low = std::exp(mean - half);
   result.high = std::exp(mean + half);
   return result;
+}
+
+PairedRatio paired_ratio(std::span<const double> first, std::span<const double> second) {
+  std::vector<double> apart(first.size());
+  std::iota(apart.begin(), apart.end(), 0.0);
+  return paired_ratio(first, second, apart, 0.5);
 }
 
 }  // namespace coast::study

@@ -45,6 +45,8 @@ estimate::FilterOptions ReversedRun::mirrored(estimate::FilterOptions options) c
   constexpr double kNext = 1e-9;  // s, the resolution of GpsTime
   for (estimate::Withheld& span : options.withheld)
     span = {ins::mirrored(span.to, mirror_) + kNext, ins::mirrored(span.from, mirror_) + kNext, span.satellites_left};
+  for (geo::GpsTime& t : options.knots_at) t = ins::mirrored(t, mirror_);
+  std::ranges::reverse(options.knots_at);
   return options;
 }
 

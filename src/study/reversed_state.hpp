@@ -26,7 +26,7 @@ class ReversedRun {
   /// time offset change sign.
   [[nodiscard]] estimate::FilterState mirrored(const estimate::FilterState& state, const estimate::StateLayout& layout) const;
 
-  /// The same fixes withheld.
+  /// The same fixes withheld, knots at the same instants.
   [[nodiscard]] estimate::FilterOptions mirrored(estimate::FilterOptions options) const;
 
  private:

@@ -1,17 +1,18 @@
 #pragma once
-// One simulated recording with one outage, processed as `coast process` does it. Private to the room.
+// One simulated recording with outages, processed as `coast process` does it. Private to the room.
 
 #include "coast/simulate/scenario.hpp"
-#include "coast/study/outage.hpp"
+#include "coast/study/ensemble.hpp"
 
 namespace coast::study {
 
-/// The outage's fixes are withheld from the first step on: neither the refined start nor anything else has seen them. The
-/// recording ends `kTail` after it.
-/// @param recordings  body axes  @param truth  of the scenario
-/// @throws InputError  the outage begins before the filter does
-[[nodiscard]] OutageResult solve_outage(const simulate::Scenario& scenario, const record::Trajectory& truth,
-                                        simulate::ErrorFreeMission::Recordings recordings, const noise::ImuErrorModel& model,
-                                        const Outage& outage);
+/// Prepared, filtered once, and every outage by itself.
+/// @param recordings     body axes  @param truth  of the scenario
+/// @param refine_before  the start is refined with fixes before it alone: no later than the first outage of the study
+/// @throws InputError  that is before the filter begins
+[[nodiscard]] std::vector<OutageResult> solve_outages(const simulate::Scenario& scenario, const record::Trajectory& truth,
+                                                      simulate::ErrorFreeMission::Recordings recordings,
+                                                      const NamedModel& model, geo::GpsTime refine_before,
+                                                      const std::vector<Outage>& outages);
 
 }  // namespace coast::study

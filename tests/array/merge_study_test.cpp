@@ -1,9 +1,11 @@
 #include "coast/array/merge_study.hpp"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 #include <tbb/global_control.h>
 
 #include <algorithm>
+#include <numeric>
 
 namespace coast::array {
 namespace {
@@ -49,6 +51,21 @@ TEST(MergeStudy, PredictionsByErrorsTakeOffWhatAnAutoregressionHolds) {
   EXPECT_NEAR(study.residual_models[2].removed_by_errors, 0.04, 0.02);
   for (const ResidualModel& model : study.residual_models) EXPECT_LT(model.removed, model.removed_by_errors + 1e-3);
   EXPECT_NEAR(study.residual_models[0].true_autocorrelation, 0.6, 1e-9);
+}
+
+TEST(MergeStudy, KeepsTheFirstRunForFigures) {
+  const MergeStudyOptions options = short_study();
+  const MergeStudy study = run_merge_study(options);
+  ASSERT_EQ(study.first_errors.size(), options.sensors.size() + 3);  // mean, corrected by residuals, corrected by errors
+  const auto mean_square = [](const std::vector<double>& values) {
+    return std::inner_product(values.begin(), values.end(), values.begin(), 0.0) / static_cast<double>(values.size());
+  };
+  EXPECT_GT(mean_square(study.first_errors[3]), mean_square(study.first_errors[5]));
+  // What is left of the errors is white with the true variance: mean square 1 over it, four of sqrt(2/8000).
+  ASSERT_EQ(study.first_residuals.size(), options.samples);
+  std::vector<double> standardised = study.first_residuals;
+  for (std::size_t n = 0; n < standardised.size(); ++n) standardised[n] /= study.first_sd[n];
+  EXPECT_NEAR(mean_square(standardised), 1.0, 0.063);
 }
 
 TEST(MergeStudy, DoesNotDependOnThreads) {

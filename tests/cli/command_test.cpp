@@ -14,7 +14,6 @@
 #include "load.hpp"
 #include "program.hpp"
 #include "run_config.hpp"
-#include "study_config.hpp"
 #include "support/schema.hpp"
 #include "support/support.hpp"
 
@@ -212,123 +211,6 @@ TEST(Commands, BadInputIsStatusTwoAndUnwritableOutputStatusOne) {
   EXPECT_EQ(unwritable.status, 1) << unwritable.error;
   EXPECT_NE(unwritable.error.find(here + "/file/out"), std::string::npos) << unwritable.error;
 }
-
-// --- coast outage
-
-/// A shipped study with few seeds, where a test can write beside it.
-fs::path shipped_study(const char* name, const fs::path& folder, const char* count) {
-  const fs::path configs = fs::path(COAST_SOURCE_DIR) / "configs";
-  std::string text = text_of(configs / "studies" / name);
-  const auto replace = [&text](const std::string& from, const std::string& to) {
-    ASSERT_NE(text.find(from), std::string::npos) << from;
-    for (auto at = text.find(from); at != std::string::npos; at = text.find(from, at + to.size()))
-      text.replace(at, from.size(), to);
-  };
-  replace("count: 100", fmt::format("count: {}", count));
-  replace(": ../", fmt::format(": {}/", configs.string()));
-  for (const char* floor : {"gyro_white_noise.yaml", "white_noise.yaml"})
-    replace(fmt::format("file: {}", floor), fmt::format("file: {}", (configs / "studies" / floor).string()));
-  write(folder / name, text);
-  return folder / name;
-}
-
-TEST(OutageStudy, ShippedEnsembleRunsWithTwoSeeds) {
-  const test::TemporaryDirectory folder;
-  const fs::path study = shipped_study("roundabout_20s.yaml", folder.path(), "2");
-  const fs::path out = folder.path() / "out";
-  const Outcome outcome = run(fmt::format("outage '{}' --out '{}'", study.string(), out.string()), folder.path());
-  ASSERT_EQ(outcome.status, 0) << outcome.error;
-  EXPECT_GT(fs::file_size(out / "report.html"), 100000U);
-  test::expect_valid("page", nlohmann::json::parse(text_of(out / "report.json")));
-  const auto result = nlohmann::json::parse(text_of(out / "outage.json"));
-  const auto& outage = result["outages"][0];
-  EXPECT_EQ(outage["duration_s"], 20.0);
-  ASSERT_EQ(outage["runs"].size(), 6U);  // two truths with two error models each, and two floors
-  for (const auto& run : outage["runs"]) {
-    EXPECT_EQ(run["forward"]["largest_by_seed_m"]["horizontal"].size(), 2U);
-    for (const char* axis : {"n", "e"}) {
-      // Two normal errors: their mean square over the variance stays below 12 but once in 160 thousand (chi-square, 2 dof).
-      const auto& end = run["forward"]["end"][axis];
-      EXPECT_LT(end["rms_m"].get<double>(), std::sqrt(12.0) * end["predicted_rms_m"].get<double>());
-      EXPECT_GT(end["predicted_rms_m"].get<double>(), run["gyro_noise_alone_m"].get<double>());
-    }
-    EXPECT_LT(run["smoothed"]["largest"]["horizontal"]["rms_m"].get<double>(),
-              0.5 * run["forward"]["largest"]["horizontal"]["rms_m"].get<double>());
-  }
-  // Of either truth: EM and two floors against the manufacturer's model, forward and smoothed.
-  ASSERT_EQ(outage["paired"].size(), 12U);
-  const auto& first = outage["runs"][0]["forward"]["largest_by_seed_m"]["horizontal"];
-  const auto& second = outage["runs"][1]["forward"]["largest_by_seed_m"]["horizontal"];
-  const double ratio =
-      std::sqrt(second[0].get<double>() * second[1].get<double>() / first[0].get<double>() / first[1].get<double>());
-  EXPECT_NEAR(outage["paired"][0]["horizontal"]["ratio"].get<double>(), ratio, 1e-12);
-  EXPECT_EQ(outage["paired"][0]["second"], "EM");
-}
-
-TEST(OutageStudy, EveryShippedStudyIsRead) {
-  std::size_t studies = 0;
-  for (const auto& entry : fs::directory_iterator(fs::path(COAST_SOURCE_DIR) / "configs" / "studies")) {
-    if (text_of(entry.path()).find("coast.study/1") == std::string::npos) continue;
-    const auto study = std::get<EnsembleStudy>(read_study(entry.path()));
-    EXPECT_EQ(study.plan.seeds, 100U) << entry.path();
-    EXPECT_EQ(study.plan.cases.size(), 4U) << entry.path();
-    ++studies;
-  }
-  EXPECT_EQ(studies, 2U);
-}
-
-TEST(OutageStudy, SweepsOneRecordingWithTwoErrorModels) {
-  const test::TemporaryDirectory folder;
-  write(folder.path() / "study.yaml",
-        fmt::format("run: {}\nsweep: {{durations_s: [10], every_s: 40}}\nerror_models:\n  - {{name: own, file: {}}}\n"
-                    "  - {{name: again, file: {}}}\n",
-                    (recording() / "run.yaml").string(), (recording() / "error_model.yaml").string(),
-                    (recording() / "error_model.yaml").string()));
-  const fs::path out = folder.path() / "out";
-  const Outcome outcome =
-      run(fmt::format("outage '{}' --out '{}'", (folder.path() / "study.yaml").string(), out.string()), folder.path());
-  ASSERT_EQ(outcome.status, 0) << outcome.error;
-  test::expect_valid("page", nlohmann::json::parse(text_of(out / "report.json")));
-  const auto result = nlohmann::json::parse(text_of(out / "outage.json"));
-  ASSERT_EQ(result["models"].size(), 2U);
-  EXPECT_EQ(result["models"][0]["drift"][0]["outages"], 8);  // 60, 100, .. 340 s of 360 s
-  EXPECT_EQ(result["models"][0]["drift"], result["models"][1]["drift"]);
-  EXPECT_EQ(result["paired"][0]["ratio"], 1.0);  // the same model twice
-  EXPECT_EQ(result["paired"][0]["pairs"], 8);
-}
-
-struct SpoiledStudy {
-  const char* what;
-  const char* from;
-  const char* to;
-  const char* message;
-};
-class SpoiledStudies : public testing::TestWithParam<SpoiledStudy> {};
-
-TEST_P(SpoiledStudies, EndWithStatusTwoAndNameTheLine) {
-  const test::TemporaryDirectory folder;
-  const fs::path study = shipped_study("straight_130s.yaml", folder.path(), "2");
-  std::string text = text_of(study);
-  const auto at = text.find(GetParam().from);
-  ASSERT_NE(at, std::string::npos);
-  text.replace(at, std::string(GetParam().from).size(), GetParam().to);
-  write(study, text);
-  const Outcome outcome = run(fmt::format("outage '{}'", study.string()), folder.path());
-  EXPECT_EQ(outcome.status, 2) << outcome.error;
-  EXPECT_NE(outcome.error.find("straight_130s.yaml:"), std::string::npos) << outcome.error;
-  EXPECT_NE(outcome.error.find(GetParam().message), std::string::npos) << outcome.error;
-}
-
-INSTANTIATE_TEST_SUITE_P(Commands, SpoiledStudies,
-                         testing::Values(SpoiledStudy{"one seed has no pair", "count: 2", "count: 1", "at least 2"},
-                                         SpoiledStudy{"a negative seed", "first: 1", "first: -1", "at least 0"},
-                                         SpoiledStudy{"an unknown key", "floors:", "flors:", "flors"},
-                                         SpoiledStudy{"a run beside a scenario", "truths:", "run: run.yaml\ntruths:", "run"},
-                                         SpoiledStudy{"an outage beyond the end", "truths:",
-                                                      "outages: [{start_s: 880, duration_s: 130}]\ntruths:", "900 s"},
-                                         SpoiledStudy{"an outage of nothing", "truths:",
-                                                      "outages: [{start_s: 300, duration_s: 0}]\ntruths:", "above zero"}),
-                         [](const testing::TestParamInfo<SpoiledStudy>& spoiled) { return fmt::format("n{}", spoiled.index); });
 
 std::vector<fs::path> yaml_files(const char* folder) {
   std::vector<fs::path> files;

@@ -26,7 +26,7 @@ TEST(Schemas, AreOfOneDraft) {
 
 TEST(Schemas, OwnExamplesAreValid) {
   for (const char* name : {"calibration", "calibration_run", "estimator_study", "estimator_study_result", "imu_error_model",
-                           "ppk", "ppk_result", "run", "scenario", "study", "summary"}) {
+                           "outage", "ppk", "ppk_result", "run", "scenario", "study", "summary"}) {
     const json examples = test::schema(name).at("examples");
     ASSERT_FALSE(examples.empty()) << name;
     for (const json& example : examples) test::expect_valid(name, example, "example");
@@ -67,6 +67,25 @@ TEST(Schemas, RefuseWhatTheProgramRefuses) {
   EXPECT_TRUE(refused("study", {{"sweep", nullptr}, {"scenario", "s.yaml"}, {"seeds", hundred_seeds}}));
   EXPECT_TRUE(refused("study", {{"scenario", "s.yaml"}, {"seeds", hundred_seeds}}));
   EXPECT_TRUE(refused("study", {{"floors", json::array()}}));
+  const json simulated = {{"run", nullptr}, {"scenario", "s.yaml"}, {"seeds", hundred_seeds}};
+  const auto with = [](json patch, const json& more) {
+    patch.merge_patch(more);
+    return patch;
+  };
+  EXPECT_FALSE(refused("study", with(simulated, {{"sweep", {{"durations_s", {20}}}}})));
+  EXPECT_TRUE(refused("study", with(simulated, {{"sweep", {{"satellites", 4}}}})));
+  EXPECT_TRUE(refused("study", with(simulated, {{"outages", {{{"start_s", 100}, {"duration_s", 20}}}}})));  // beside a sweep
+  const auto model_with = [](const char* key, const char* value) {
+    return json{{"error_models", {{{"name", "a"}, {"file", "a.yaml"}, {key, value}}}}};
+  };
+  EXPECT_FALSE(refused("study", model_with("noise", "estimated")));
+  EXPECT_TRUE(refused("study", model_with("noise", "guessed")));
+  EXPECT_TRUE(refused("study", model_with("smoother", "batch")));  // of a recording
+  EXPECT_FALSE(refused("study", with(simulated, model_with("smoother", "batch"))));
+  EXPECT_TRUE(refused("study", with(simulated, model_with("noise", "estimated"))));
+  EXPECT_FALSE(refused("outage", {{"more", 1}}));  // outputs may gain keys
+  EXPECT_TRUE(refused("outage", {{"outages", json::array()}}));
+  EXPECT_TRUE(refused("outage", {{"seeds", {{"count", 0}}}}));
   EXPECT_FALSE(refused("calibration_run", {{"criterion", "aicc"}}));
   EXPECT_TRUE(refused("calibration_run", {{"records", nullptr}}));
   EXPECT_TRUE(refused("calibration_run", {{"records", json::array()}}));

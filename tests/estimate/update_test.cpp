@@ -18,6 +18,7 @@ using namespace estimate;
 const AuxiliaryStates kAllAuxiliaries{.lever_arm_sd_m = 0.05,
                                       .time_offset_sd_s = 0.02,
                                       .mounting_sd = 0.03,
+                                      .base_offset_sd_m = 0.5,
                                       .correlated_gnss = {.horizontal_m = 0.02, .vertical_m = 0.04, .time_s = 60.0}};
 
 class Updates : public testing::TestWithParam<UpdateKind> {

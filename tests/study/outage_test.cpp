@@ -3,7 +3,6 @@
 #include <gtest/gtest.h>
 
 #include "coast/geo/earth.hpp"
-#include "simulated.hpp"
 
 namespace coast::study {
 namespace {
@@ -66,37 +65,6 @@ TEST(OutageRecorder, SummarisesAKnownDrift) {
   ASSERT_TRUE(e.gnss_horizontal_max_m.has_value());
   // The last withheld fix is at 9 s; the horizon 40 m away is tilted by 6e-6 rad, which turns 9 m of height into 6e-5 m.
   EXPECT_NEAR(*e.gnss_horizontal_max_m, 0.5 * 9.0 * 9.0, 1e-4);
-}
-
-// An outage run by itself from a knot of the gap-free run against the whole mission run with the same fixes withheld.
-TEST(Outages, ResumedRunEqualsTheWholeMissionWithheld) {
-  const simulate::Scenario scenario = test::drive(360.0, 3);
-  simulate::SimulatedMission recording = simulate::simulate(scenario);
-  const record::Trajectory truth = recording.truth;
-  const PreparedMission mission(std::move(recording.imu), std::move(recording.gnss), test::setup_of(scenario), {});
-  const Solution gap_free = solve(mission, mission.options(), true, {}, {});
-  const Outage outage{mission.start().nav.t + 120.0, 20.0};
-  const auto resumed = run_outages(mission.mission(), mission.model(), mission.options(), gap_free.knots, truth,
-                                   Eigen::Vector3d::Zero(), {outage});
-  ASSERT_EQ(resumed.size(), 1U);
-
-  estimate::FilterOptions options = mission.options();
-  options.withheld.push_back(outage.span());
-  OutageRecorder forward(outage, truth, Eigen::Vector3d::Zero(), mission.mission());
-  OutageRecorder smoothed(outage, truth, Eigen::Vector3d::Zero(), mission.mission());
-  SolutionOutputs outputs;
-  outputs.forward = [&](const record::TrajectoryEpoch& epoch) { forward.add(epoch); };
-  outputs.smoothed = [&](const record::TrajectoryEpoch& epoch) { smoothed.add(epoch); };
-  static_cast<void>(solve(mission, options, true, outputs, {}));
-
-  const Eigen::Vector3d sigma = forward.errors().sigma_end_m;
-  // The knots of the withheld run stand at other instants (0.5 s instead of the fixes'): both are exact to the folding of the
-  // transition, 1e-6 of the error growth.
-  EXPECT_LE(((resumed[0].forward.end_m - forward.errors().end_m).array() / sigma.array()).abs().maxCoeff(), 1e-4);
-  // Smoothed: what lies beyond the 60 s tail is left out.
-  const Eigen::Vector3d sd = smoothed.errors().sigma_max_m;
-  EXPECT_LE(((resumed[0].smoothed->max_m - smoothed.errors().max_m).array() / sd.array()).abs().maxCoeff(), 0.1);
-  EXPECT_GT(forward.errors().horizontal_max_m, 5.0 * smoothed.errors().horizontal_max_m);
 }
 
 }  // namespace

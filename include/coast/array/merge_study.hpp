@@ -47,9 +47,11 @@ struct MergeStudy {
   /// reference); oracle weights (the true variances); oracle (true variances and predictions)
   std::vector<MergeResult> merges;
   std::vector<ResidualModel> residual_models;  ///< by sensor
-  /// Of the first run, for figures: errors of each sensor, of the mean and of what was corrected by errors.
+  /// Of the first run, for figures: errors of each sensor, of the mean, of what was corrected by residuals and by errors.
   std::vector<std::vector<double>> first_errors;
-  std::vector<double> first_sd, first_predicted_sd;  ///< of sensor 1: true and predicted standard deviation, sample by sample
+  /// Of sensor 1 in the first run, sample by sample: its errors less what the model of its errors predicts, and their standard
+  /// deviation, true and as that model predicts it.
+  std::vector<double> first_residuals, first_sd, first_predicted_sd;
 };
 
 /// In parallel; the same bytes on any number of threads.

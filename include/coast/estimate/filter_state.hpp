@@ -19,6 +19,9 @@ struct FilterState {
 void remove_error(const Eigen::VectorXd& d, record::NavState& nav, Eigen::VectorXd& x);
 /// The error d (kNav elements) of `estimate` against `truth`: position, velocity, rotation vector psi_e.
 [[nodiscard]] Eigen::Matrix<double, kNav, 1> error_between(const record::NavState& estimate, const record::NavState& truth);
+/// Covariance of a state whose position comes from fixes: it is off by whatever all fixes are off by, dr <- dr - db. Nothing
+/// where the layout has no base offset.
+void tie_position_to_fixes(const StateLayout& layout, Eigen::MatrixXd& P);
 /// Navigation covariance (e-frame, 9 x 9) into N, E, D at the position.
 [[nodiscard]] record::NavCovariance nav_covariance_n(const Eigen::Ref<const Eigen::Matrix<double, kNav, kNav>>& P,
                                                      const Eigen::Vector3d& r_eb_e);

@@ -69,6 +69,8 @@ struct FilterOptions {
   double gate_probability = 1e-6;  ///< share of good fixes that the gate may refuse; 0: no gate
   double gate_patience_s = 3.0;    ///< fixes refused for longer are taken: it is the filter that is wrong
   double knot_interval_s = 0.5;    ///< longest interval between knots
+  /// Further instants that become knots, ascending.
+  std::vector<geo::GpsTime> knots_at = {};
   VehicleConstraints vehicle;
   std::vector<Withheld> withheld;
 };

@@ -9,6 +9,9 @@
 
 namespace coast::estimate {
 
+/// Lower triangle of a symmetric matrix, row by row: CHOLMOD takes it as it lies. By columns it would copy it.
+using LowerTriangle = Eigen::SparseMatrix<double, Eigen::RowMajor>;
+
 /// Elements of the inverse of a symmetric positive definite matrix on the pattern of its Cholesky factor, which holds that of
 /// the matrix itself: whatever two unknowns the matrix ties to each other, their covariance is here.
 class SelectedInverse {
@@ -25,8 +28,10 @@ class SelectedInverse {
   friend class SparseCholesky;
   SelectedInverse() = default;
 
-  Eigen::SparseMatrix<double> lower_;  // in elimination order, laid out as the factor
-  Eigen::VectorXi position_;           // of every row in that order
+  std::shared_ptr<const void> factor_;  // whose memory the elements took over
+  std::span<const int> starts_, rows_;  // of the columns, in elimination order
+  std::span<const double> values_;
+  Eigen::VectorXi position_;  // of every row in that order
 };
 
 /// P A P' = L L' of a sparse symmetric positive definite A, by CHOLMOD (Chen, Davis, Hager & Rajamanickam 2008, ACM TOMS
@@ -36,11 +41,11 @@ class SelectedInverse {
 ///        destroyed or assigned to.
 class SparseCholesky {
  public:
-  /// Chooses the elimination order P, natural or approximate minimum degree, whichever fills L less (natural if equal: a chain
-  /// of links with the border last then stays as it is), and analyses L once for all factorizations.
-  /// @param lower  lower triangle, compressed; of its values none is looked at, of an upper triangle nothing at all
+  /// Chooses the elimination order P and analyses L once for all factorizations. An order is natural if that fills nothing (a
+  /// chain of links with the border last), else natural or approximate minimum degree, whichever fills less.
+  /// @param lower  compressed; of its values none is looked at, of an upper triangle nothing at all
   /// @throws std::invalid_argument  not square, not compressed
-  explicit SparseCholesky(const Eigen::SparseMatrix<double>& lower);
+  explicit SparseCholesky(const LowerTriangle& lower);
   ~SparseCholesky();
   SparseCholesky(SparseCholesky&&) noexcept;
   SparseCholesky& operator=(SparseCholesky&&) noexcept;
@@ -49,11 +54,16 @@ class SparseCholesky {
   /// @throws NumericalError  not positive definite, or not finite; names the column at which elimination ended. There is no
   ///                         factor then.
   /// @throws std::invalid_argument  another pattern
-  void factorize(const Eigen::SparseMatrix<double>& lower);
+  void factorize(const LowerTriangle& lower);
 
   /// A^-1 b. This and the following need a factor: @throws std::logic_error  there is none
   [[nodiscard]] Eigen::VectorXd solve(const Eigen::VectorXd& b) const;
   [[nodiscard]] double log_determinant() const;
+
+  /// Condition number of A with its unknowns scaled so that the diagonal is one: largest over smallest eigenvalue, by power
+  /// iterations with L L' and its inverse until they move by less than a percent (no more than `most` of each). Iterations
+  /// approach from below. A solution by normal equations is off by some 1e-17 to 1e-16 times this, of its standard deviations.
+  [[nodiscard]] double condition(int most = 30) const;
 
   /// Elements of A^-1 on the pattern of L + L' by the recursion of Takahashi, Fagan & Chen (1973) and Erisman & Tinney (1975,
   /// CACM 18:177), column by column from the last to the first. With the unit factor l_kj = L_kj / L_jj,
@@ -61,8 +71,8 @@ class SparseCholesky {
   ///     Z_ij = - sum_{k > j} Z_ik l_kj,   i > j,        Z_jj = 1 / L_jj^2 - sum_{k > j} l_kj Z_kj
   ///
   /// i and k over the pattern of column j of L: the sums stay inside the pattern of L. About as many operations as the
-  /// factorization: the sum of the squared lengths of its columns.
-  [[nodiscard]] SelectedInverse selected_inverse() const;
+  /// factorization: the sum of the squared lengths of its columns. Made where L was: there is no factor afterwards.
+  [[nodiscard]] SelectedInverse invert();
 
   /// Of L, diagonal included; known from the analysis.
   [[nodiscard]] std::size_t factor_entries() const;

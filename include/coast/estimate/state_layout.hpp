@@ -28,7 +28,8 @@ struct AuxiliaryStates {
   double lever_arm_sd_m = 0.0;    ///< prior sd of each component, body axes
   double time_offset_sd_s = 0.0;  ///< prior sd of the GNSS time offset
   double mounting_sd = 0.0;       ///< prior sd of the vehicle's yaw and pitch against the body, rad
-  CorrelatedGnss correlated_gnss;
+  double base_offset_sd_m = 0.0;  ///< prior sd of what all GNSS positions are off by, each component in e
+  CorrelatedGnss correlated_gnss = {};
   /// Room for unknowns of carrier-phase observations, which come and go: constant states without prior, nameless here.
   int carrier_slots = 0;
 };
@@ -72,6 +73,7 @@ class StateLayout {
   [[nodiscard]] std::optional<int> lever_arm() const { return lever_arm_; }      ///< 3 states, b
   [[nodiscard]] std::optional<int> time_offset() const { return time_offset_; }  ///< 1 state, s
   [[nodiscard]] std::optional<int> mounting() const { return mounting_; }        ///< pitch, yaw, rad
+  [[nodiscard]] std::optional<int> base_offset() const { return base_offset_; }  ///< 3 states, e
   [[nodiscard]] std::optional<int> gnss_error() const { return gnss_error_; }    ///< 3 states, N, E, D
   /// The carrier slots are the last states, [carrier_slots(), size()).
   [[nodiscard]] int carrier_slots() const { return carrier_slots_; }
@@ -104,6 +106,7 @@ class StateLayout {
   std::optional<int> lever_arm_;
   std::optional<int> time_offset_;
   std::optional<int> mounting_;
+  std::optional<int> base_offset_;
   std::optional<int> gnss_error_;
   int carrier_slots_ = kNav;
   Eigen::Matrix3d gyro_density_b_ = Eigen::Matrix3d::Zero();

@@ -40,7 +40,7 @@ struct UpdateContext {
   Eigen::Matrix3d C_n_e;        ///< at the position
 };
 
-/// GNSS position at the antenna.   z = r + C l + gnss error - v_a t_offset
+/// GNSS position at the antenna.   z = r + C l + gnss error + base offset - v_a t_offset
 [[nodiscard]] Linearised gnss_position(const FilterState& state, const UpdateContext& context, const record::GnssFix& fix);
 /// GNSS velocity at the antenna.   z = v + C (omega x l)
 [[nodiscard]] std::optional<Linearised> gnss_velocity(const FilterState& state, const UpdateContext& context,

@@ -32,6 +32,7 @@ struct InitialState {
   Eigen::Vector3d sd_velocity_n;
   Eigen::Vector3d sd_attitude_n;
   Eigen::Vector3d gyro_bias = Eigen::Vector3d::Zero();  ///< body axes, rad/s; from standstill or motion
+  std::optional<double> gyro_bias_sd;                   ///< of each component, where it was seen standing still
   std::string method;  ///< for people: "levelled over 35.2 s standing still, heading from GNSS course at ..."
 };
 

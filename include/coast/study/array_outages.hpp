@@ -10,7 +10,7 @@
 
 #include "coast/array/synthetic.hpp"
 #include "coast/simulate/scenario.hpp"
-#include "coast/study/ensemble.hpp"
+#include "coast/study/outage.hpp"
 
 namespace coast::study {
 

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "coast/estimate/batch_smoother.hpp"
+#include "coast/estimate/combination.hpp"
 #include "coast/estimate/forward_filter.hpp"
 #include "coast/estimate/noise_fit.hpp"
 #include "coast/estimate/smoother.hpp"
@@ -28,6 +29,7 @@ struct Setup {
   bool vehicle_forward = false;            ///< the body points where the vehicle goes
   std::optional<ins::InitialState> start;  ///< given; otherwise found
   /// Where the first studied outage begins: the start is refined with fixes before it alone, or the outage would look too good.
+  /// So is noise fitted, where at least 100 s come before it.
   std::optional<geo::GpsTime> refine_before;
   std::optional<estimate::NoiseFitChoice> noise_fit;
   /// The delivered solution is smoothed as a batch; outages that are swept and starts that are refined are not.
@@ -64,6 +66,10 @@ class PreparedMission {
   /// What a backward pass begins with that is to know nothing of the forward one but where it ended: its states, with the
   /// uncertainty of the start.
   [[nodiscard]] estimate::FilterState far_end(const estimate::FilterState& last) const;
+  /// The same for a backward filter that is to be weighed against the forward one: nothing may count twice that the forward
+  /// filter has found. Navigation states ten times as uncertain as there, so that a hundredth of that information counts twice;
+  /// sensor states as uncertain as the error model alone leaves them by then; auxiliary states at their prior.
+  [[nodiscard]] estimate::FilterState ignorant_end(const estimate::FilterState& last) const;
   /// Filters backward from `from` at the far end to the epoch of the start; delivers states in forward time (from last to
   /// first) before each knot's updates. The recordings are reversed in place meanwhile.
   /// @return the state at the start's epoch, its updates done
@@ -94,6 +100,7 @@ struct Solution {
   estimate::FilterResult forward;
   estimate::KnotStore knots;
   std::vector<estimate::SmoothedKnot> smoothed;  ///< empty without smoother
+  std::optional<estimate::BatchReport> batch;    ///< where the batch made them
 };
 
 struct SolutionOutputs {
@@ -102,12 +109,21 @@ struct SolutionOutputs {
   std::function<void(const estimate::FilterState&)> at_knots;
   estimate::KnotSampling states;  ///< smoothed knots that keep their sensor states
 };
+/// The backward filter's half of a combined solution: a forward pass says where knots are and how it ends, then the backward
+/// filter makes its knots there too. The recordings are turned round for a while.
+/// @param states  knots that keep sensor states
+[[nodiscard]] estimate::BackwardKnots backward_knots(PreparedMission& mission, const estimate::FilterOptions& options,
+                                                     const estimate::KnotSampling& states, const Progress& progress);
+
 /// @param carried  start that earlier passes left, with their covariance (carried_start). The forward solution begins with it;
 ///                 the smoothed one takes its states alone and the uncertainty of the alignment, so that no fix counts twice in
 ///                 its sigmas: it costs another forward pass.
+/// @param backward  backward_knots() of the same options: the smoothed solution is the combined one. Null: by the setup. Not
+///                  with `carried`, after which both filters would know the same fixes.
 [[nodiscard]] Solution solve(const PreparedMission& mission, const estimate::FilterOptions& options, bool smooth,
                              const SolutionOutputs& outputs, const Progress& progress,
-                             const std::optional<estimate::FilterState>& carried = {});
+                             const std::optional<estimate::FilterState>& carried = {},
+                             const estimate::BackwardKnots* backward = nullptr);
 
 /// Multi-pass: forward, backward, ... over the whole mission, each pass beginning with the states and the covariance that the
 /// one before ended with, until one arrives at the start again.

@@ -5,8 +5,8 @@
 #include <vector>
 
 #include "coast/estimate/forward_filter.hpp"
-#include "coast/estimate/smoother.hpp"
 #include "coast/study/comparison.hpp"
+#include "coast/study/manoeuvre.hpp"
 
 namespace coast::study {
 
@@ -37,7 +37,10 @@ struct OutageResult {
   Outage outage;
   OutageErrors forward;
   std::optional<OutageErrors> smoothed;
+  Manoeuvre manoeuvre = Manoeuvre::kStraight;  ///< flown meanwhile
 };
+
+inline constexpr double kMargin = 10.0;  ///< s before and after an outage that its series has, for figures
 
 /// Gathers the errors of a streamed trajectory inside (and, for figures, around) one outage.
 class OutageRecorder {
@@ -82,14 +85,5 @@ struct OutageSweep {
   int satellites_left = 0;
 };
 [[nodiscard]] std::vector<Outage> outages_of(const OutageSweep& sweep, geo::GpsTime from, geo::GpsTime to);
-
-/// Runs every outage by itself: the filter goes on from the last knot of the gap-free run before the outage and stops `tail_s`
-/// after it; the smoother runs over that stretch. What lies further away tells nothing about the outage that the stretch
-/// does not tell already. In order; on all threads.
-[[nodiscard]] std::vector<OutageResult> run_outages(const estimate::Mission& mission, const noise::ImuErrorModel& model,
-                                                    const estimate::FilterOptions& options, const estimate::KnotStore& knots,
-                                                    const record::Trajectory& reference, const Eigen::Vector3d& lever_arm_b,
-                                                    const std::vector<Outage>& outages, double tail_s = 60.0,
-                                                    const std::function<void(double)>& progress = {});
 
 }  // namespace coast::study

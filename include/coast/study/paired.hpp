@@ -25,7 +25,7 @@ namespace coast::study {
 struct PairedRatio {
   std::size_t pairs = 0;  ///< of positive errors; others are left out
   double ratio = 1.0;     ///< geometric mean of second : first; below 1 the second is better
-  double low = 1.0;       ///< 95 % interval of it; low = ratio = high where there are fewer than two pairs
+  double low = 1.0;       ///< 95 % interval of it; low = ratio = high where there are fewer than two pairs, or none apart
   double high = 1.0;
   std::size_t second_smaller = 0;  ///< pairs
   std::size_t first_smaller = 0;
@@ -39,5 +39,17 @@ struct PairedRatio {
 /// The interval supposes normal logarithms of ratios, or n large enough for their mean; the sign test supposes nothing.
 /// @throws std::invalid_argument  the two differ in length
 [[nodiscard]] PairedRatio paired_ratio(std::span<const double> first, std::span<const double> second);
+
+/// The same of pairs that are not independent: two of them share what happened where their stretches of time overlap, and
+/// their logarithms are taken to be correlated by that share, w_ij = max(0, 1 - |t_i - t_j| / reach). Then
+///
+///     variance of m = sum_i (d_i - m)^2 / n / (k - 1),   k = n^2 / sum_ij w_ij
+///
+/// without bias. k is the number of independent stretches that tell as much; t has k - 1 degrees of freedom, whole ones and at
+/// least one: with few stretches the interval is wider than it need be. The sign test is left as it is, and is then too sure.
+/// @param times  of the pairs, s  @param reach  length of a stretch, s
+/// @throws std::invalid_argument  the three differ in length
+[[nodiscard]] PairedRatio paired_ratio(std::span<const double> first, std::span<const double> second,
+                                       std::span<const double> times, double reach);
 
 }  // namespace coast::study

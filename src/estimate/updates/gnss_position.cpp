@@ -9,6 +9,10 @@ Linearised gnss_position(const FilterState& state, const UpdateContext& context,
     predicted.value_e += context.C_n_e * state.x.segment<3>(*layout.gnss_error());
     predicted.H.block<3, 3>(0, *layout.gnss_error()) = context.C_n_e;
   }
+  if (layout.base_offset()) {
+    predicted.value_e += state.x.segment<3>(*layout.base_offset());
+    predicted.H.block<3, 3>(0, *layout.base_offset()).setIdentity();
+  }
   Linearised m;
   m.kind = UpdateKind::kGnssPosition;
   m.nu = fix.r_ea_e - predicted.value_e;
