@@ -104,17 +104,19 @@ TEST(Commands, ProcessesWhatSimulateWroteAndRepeatsItFromTheResolvedFile) {
 
 TEST(Commands, BatchIsAsGoodAsTheSmootherAndSaysWhatItDoubts) {
   const test::TemporaryDirectory folder;
-  const auto solve = [&](const std::string& name, const std::string& keys) {
+  const auto solve = [&](const std::string& name, const std::string& keys_of_gnss, const std::string& keys) {
     const fs::path file = recording() / (name + ".yaml");
-    write(file, text_of(recording() / "run.yaml") + keys);
+    std::string text = text_of(recording() / "run.yaml") + keys;
+    text.insert(text.find("gnss: {") + 7, keys_of_gnss);
+    write(file, text);
     test::expect_valid("run", test::load_yaml_as_json(file));
     const Outcome outcome =
         run(fmt::format("process '{}' --out '{}'", file.string(), (folder.path() / name).string()), folder.path());
     EXPECT_EQ(outcome.status, 0) << outcome.error;
     return nlohmann::json::parse(text_of(folder.path() / name / "summary.json"));
   };
-  const auto rts = solve("rts", "");
-  const auto batch = solve("batch", "smoother: batch\nrobust: {loss: cauchy, scale: 3}\n");
+  const auto rts = solve("rts", "", "");
+  const auto batch = solve("batch", "base_offset_sd_m: 0.3, ", "smoother: batch\nrobust: {loss: cauchy, scale: 3}\n");
   test::expect_valid("summary", batch);
   for (std::size_t i = 0; i < 3; ++i) {
     const double of_rts = rts["reference"]["smoothed"]["position_rms_m"][i].get<double>();
@@ -124,6 +126,18 @@ TEST(Commands, BatchIsAsGoodAsTheSmootherAndSaysWhatItDoubts) {
   EXPECT_TRUE(std::any_of(events.begin(), events.end(), [](const nlohmann::json& event) { return event["kind"] == "batch"; }));
   EXPECT_TRUE(std::none_of(events.begin(), events.end(),
                            [](const nlohmann::json& event) { return event["kind"] == "batch_not_converged"; }));
+  // Alignment took the position from fixes: it knows nothing of what all of them are off by.
+  EXPECT_TRUE(std::any_of(events.begin(), events.end(),
+                          [](const nlohmann::json& event) { return event["kind"] == "base_offset_not_seen"; }));
+  int offsets = 0;
+  for (const auto& unknown : batch["batch"]["unknowns"]) {
+    if (!unknown["name"].get<std::string>().starts_with("base_offset")) continue;
+    ++offsets;
+    EXPECT_EQ(unknown["observability"], "not seen") << unknown;
+    EXPECT_NEAR(unknown["posterior_sd"].get<double>(), 0.3, 1e-3);
+  }
+  EXPECT_EQ(offsets, 3);
+  EXPECT_NE(text_of(folder.path() / "batch" / "report.html").find("Unknowns of the whole mission"), std::string::npos);
 }
 
 TEST(Commands, ThreePassesRepeatFromTheResolvedFileAndKeepTheSweepBlind) {

@@ -12,8 +12,8 @@ namespace {
 
 constexpr const char* kScenario = R"(
 schema: coast.scenario/1
-trajectory: {{kind: car_roundabout, duration_s: 600, static_s: 60, origin_deg_m: [46.52, 6.57, 400], course_deg: 30}}
-imu: {{rate_hz: 200, lever_arm_m: [0.3, -0.2, -1.1], error_model: model.yaml}}
+trajectory: {{kind: {}, duration_s: {}, static_s: 60, origin_deg_m: [46.52, 6.57, 400], course_deg: 30}}
+imu: {{rate_hz: {}, lever_arm_m: [0.3, -0.2, -1.1], error_model: model.yaml}}
 gnss: {{rate_hz: {}, sd_m: [0.01, 0.01, 0.02]}}
 start_gps: {{week: 2374, sow: 208800}}
 seed: 1
@@ -47,15 +47,24 @@ noise::ImuErrorModel parsed(const std::string& text) {
   return noise::ImuErrorModel::from(io::parse_yaml(text, "model.yaml"));
 }
 
+/// Each scenario once.
+const simulate::SimulatedMission& simulated(const std::string& scenario) {
+  static std::map<std::string, simulate::SimulatedMission> missions;
+  const auto known = missions.find(scenario);
+  if (known != missions.end()) return known->second;
+  const auto read = [](const std::filesystem::path& path) { return io::parse_yaml(kModel21, path.string()); };
+  const config::Node root = io::parse_yaml(scenario, "scenario.yaml");
+  return missions.emplace(scenario, simulate::simulate(simulate::Scenario::from(root, read))).first->second;
+}
+
 }  // namespace
 
 const simulate::SimulatedMission& car_mission(int gnss_rate_hz) {
-  static std::map<int, simulate::SimulatedMission> missions;
-  const auto known = missions.find(gnss_rate_hz);
-  if (known != missions.end()) return known->second;
-  const config::Node root = io::parse_yaml(fmt::format(kScenario, gnss_rate_hz), "scenario.yaml");
-  const auto read = [](const std::filesystem::path& path) { return io::parse_yaml(kModel21, path.string()); };
-  return missions.emplace(gnss_rate_hz, simulate::simulate(simulate::Scenario::from(root, read))).first->second;
+  return simulated(fmt::format(kScenario, "car_roundabout", 600, 200, gnss_rate_hz));
+}
+
+const simulate::SimulatedMission& city_mission(int seconds) {
+  return simulated(fmt::format(kScenario, "city", seconds, 100, 1));
 }
 
 Eigen::Vector3d lever_arm() {
@@ -70,7 +79,8 @@ noise::ImuErrorModel model_36() {
   std::string text = kModel21;
   const std::size_t accel = text.find("accel:");
   text.insert(accel, kMore + 1);  // the literal's own first line break is left out
-  return parsed(text + (kMore + 1) + (kSecondProcess + 1));
+  text.append(kMore + 1).append(kSecondProcess + 1);
+  return parsed(text);
 }
 
 }  // namespace coast::bench

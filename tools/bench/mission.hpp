@@ -10,7 +10,10 @@ namespace coast::bench {
 /// Ten minutes of a car at 200 Hz with an industrial MEMS IMU and cm-level fixes at `gnss_rate_hz` (1 or 10).
 [[nodiscard]] const simulate::SimulatedMission& car_mission(int gnss_rate_hz);
 
-/// Lever arm from IMU to antenna of that car, m.
+/// A car in a city, with the same IMU at 100 Hz and fixes at 1 Hz.
+[[nodiscard]] const simulate::SimulatedMission& city_mission(int seconds);
+
+/// Lever arm from IMU to antenna of these cars, m.
 [[nodiscard]] Eigen::Vector3d lever_arm();
 
 /// 21 states: bias and scale factor of every axis, first-order Gauss-Markov.
