@@ -16,10 +16,10 @@ using report::Axis;
 using study::Drift;
 using study::ModelRun;
 
-constexpr std::array kTones{report::Tone::kX, report::Tone::kY, report::Tone::kZ, report::Tone::kReference};
+constexpr std::array kRunTones{report::Tone::kX, report::Tone::kY, report::Tone::kZ, report::Tone::kReference};
 
 report::Tone tone_of(std::size_t run) {
-  return run < kTones.size() ? kTones[run] : report::Tone::kAuto;
+  return run < kRunTones.size() ? kRunTones[run] : report::Tone::kAuto;
 }
 
 std::string name_of(const OutageStudy& study, const ModelRun& run) {

@@ -66,7 +66,7 @@ std::vector<study::OutageGroup> groups_from(const Node& root, double mission_s) 
   if (list && sweep) throw sweep->error("a sweep beside a list of outages", "one of the two");
   if (list) return outages_from(*list, mission_s);
   if (!sweep) return {};
-  const std::vector<study::OutageGroup> groups = study::grouped(sweep_from(*sweep), mission_s);
+  std::vector<study::OutageGroup> groups = study::grouped(sweep_from(*sweep), mission_s);
   if (groups.empty())
     throw sweep->error("no outage fits into the scenario", "durations of at most a quarter of it",
                        "Shorten durations_s or first_s.");

@@ -1,6 +1,8 @@
 #pragma once
 // Missions filtered forward, with everything that both smoothers take.
 
+#include <fmt/format.h>
+
 #include "coast/estimate/batch_smoother.hpp"
 #include "estimate/mission.hpp"
 
