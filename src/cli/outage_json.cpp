@@ -132,6 +132,17 @@ Json outage_json(const OutageStudy& study) {
   return j;
 }
 
+namespace {
+
+/// A text as a field of a CSV file (RFC 4180).
+std::string csv_field(std::string_view text) {
+  std::string field = "\"";
+  for (const char c : text) field.append(c == '"' ? 2 : 1, c);
+  return field + '"';
+}
+
+}  // namespace
+
 std::string outages_csv(const OutageStudy& study) {
   std::string text = "truth,error_model,seed,start_s,duration_s," + outage_columns() + "\n";
   for (const study::ModelRun& run : study.result.runs)
@@ -139,8 +150,8 @@ std::string outages_csv(const OutageStudy& study) {
       for (std::size_t i = 0; i < run.outages[g].size(); ++i) {
         const study::OutageGroup& group = study.result.groups[g];
         const std::string seed = study.simulated ? fmt::format("{}", study.first_seed + i % study.result.seeds) : "";
-        text += fmt::format("\"{}\",\"{}\",{},{},{},{}\n", run.truth, run.filter, seed, group.starts_s[i / study.result.seeds],
-                            group.duration_s, outage_values(run.outages[g][i]));
+        text += fmt::format("{},{},{},{},{},{}\n", csv_field(run.truth), csv_field(run.filter), seed,
+                            group.starts_s[i / study.result.seeds], group.duration_s, outage_values(run.outages[g][i]));
       }
   return text;
 }

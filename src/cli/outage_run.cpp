@@ -15,9 +15,11 @@ namespace coast::cli {
 namespace {
 
 void add_fixes(const std::vector<record::GnssFix>& fixes, Digest& digest) {
-  for (const record::GnssFix& fix : fixes)
+  for (const record::GnssFix& fix : fixes) {
     for (const double value : {fix.t.sow(), fix.r_ea_e.x(), fix.r_ea_e.y(), fix.r_ea_e.z(), fix.position_cov_n.trace()})
       digest.add(value);
+    if (fix.velocity) digest.add(fix.velocity->v_ea_n.sum() + fix.velocity->cov_n.trace());
+  }
 }
 
 std::uint64_t digest_of(const SweepStudy& config, const Recordings& recordings) {
@@ -34,6 +36,10 @@ std::uint64_t digest_of(const SweepStudy& config, const Recordings& recordings) 
   for (const record::ImuSample& s : recordings.imu.samples)
     for (const double value : {s.t.sow(), s.dtheta.x(), s.dtheta.y(), s.dtheta.z(), s.dv.x(), s.dv.y(), s.dv.z()})
       digest.add(value);
+  for (const record::NoiseLevel& level : recordings.imu.noise)
+    digest.add(level.from.sow() + level.gyro.sum() + level.accel.sum());
+  for (const record::MemberBlocks::Block& block : recordings.imu.members.blocks)
+    for (const auto& means : block.means) digest.add(means ? means->gyro.sum() + means->accel.sum() : 0.0);
   add_fixes(recordings.gnss.fixes, digest);
   if (recordings.reference)
     for (const record::NavState& nav : recordings.reference->states) digest.add(nav.r_eb_e.sum());

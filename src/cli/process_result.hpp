@@ -9,8 +9,8 @@
 #include "coast/record/event.hpp"
 #include "coast/report/series.hpp"
 #include "coast/study/comparison.hpp"
-#include "coast/study/mission.hpp"
 #include "coast/study/outage.hpp"
+#include "coast/study/solution.hpp"
 
 namespace coast::cli {
 

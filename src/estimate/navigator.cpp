@@ -47,9 +47,24 @@ void Navigator::refresh_corrections() {
   accel_offset_ = accel_inverse_ * accel_bias;
 }
 
+ins::RawIncrement Navigator::without_errors(const ins::RawIncrement& raw) const {
+  return {raw.dt, gyro_inverse_ * raw.dtheta - raw.dt * gyro_offset_, accel_inverse_ * raw.dv - raw.dt * accel_offset_};
+}
+
+// How an increment is shared out is judged by how it differs from the one before, both freed of errors: beside a corrected
+// increment the bias of a raw one would look like an acceleration. What is taken off is shared out evenly.
+ins::SplitIncrement Navigator::split(const ins::RawIncrement& raw, double fraction) const {
+  const ins::RawIncrement whole = without_errors(raw);
+  ins::SplitIncrement parts = ins::split(previous_, whole, fraction);
+  parts.first.dtheta += fraction * (raw.dtheta - whole.dtheta);
+  parts.first.dv += fraction * (raw.dv - whole.dv);
+  parts.second.dtheta = raw.dtheta - parts.first.dtheta;
+  parts.second.dv = raw.dv - parts.first.dv;
+  return parts;
+}
+
 const SampleDynamics& Navigator::propagate(const ins::RawIncrement& raw) {
-  const ins::RawIncrement corrected{raw.dt, gyro_inverse_ * raw.dtheta - raw.dt * gyro_offset_,
-                                    accel_inverse_ * raw.dv - raw.dt * accel_offset_};
+  const ins::RawIncrement corrected = without_errors(raw);
   const ins::BodyIncrement increment =
       kind_ == ins::IncrementKind::kRaw
           ? ins::compensate_two_sample(previous_, corrected)

@@ -38,7 +38,7 @@ void walk(const record::ImuRecording& imu, SampleCursor& cursor, geo::GpsTime en
     if (cursor.remainder.dt == 0.0) step.span = sample.t - now;
     cursor.remainder.dt = 0.0;
     if (end - now < step.raw.dt - kTimeTolerance) {
-      const ins::SplitIncrement parts = ins::split(navigator.previous(), step.raw, (end - now) / step.raw.dt);
+      const ins::SplitIncrement parts = navigator.split(step.raw, (end - now) / step.raw.dt);
       step.raw = parts.first;
       step.at = end;
       step.whole = false;

@@ -6,6 +6,8 @@
 #include <algorithm>
 #include <mutex>
 
+#include "stage.hpp"
+
 namespace coast::study {
 
 namespace {
@@ -103,7 +105,7 @@ estimate::KnotStore gap_free_knots(const PreparedMission& mission, const Progres
   estimate::KnotStore knots;
   estimate::FilterOutputs outputs;
   outputs.knots = &knots;
-  if (progress) outputs.progress = [&progress](double fraction) { progress("filtering forward", fraction); };
+  outputs.progress = stage(progress, "filtering forward");
   static_cast<void>(filter.run(mission.start_state(filter), outputs));
   return knots;
 }

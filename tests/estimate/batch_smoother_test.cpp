@@ -40,8 +40,7 @@ TEST(BatchSmoother, EqualsTheSmootherWhereEverythingIsLinear) {
   ASSERT_EQ(batch.smoothed.size(), rts.size());
   for (std::size_t i = 0; i < rts.size(); ++i) {
     // The solvers agree to 1e-6 (linear_batch_test.cpp). Here the trajectory is integrated again where the smoother takes the
-    // composed transitions, whose columns of Gauss-Markov states are right to kSubstep / (2 * 20 s) = 1e-3, and where a knot
-    // splits a sample the bias is shared out for it as 1/8 of a sample more.
+    // composed transitions, whose columns of Gauss-Markov states are right to kSubstep / (2 * 20 s) = 1e-3.
     EXPECT_LE(largest_ratio(difference_of(batch.smoothed[i], rts[i]), rts[i].sd), 1e-3) << i;
     EXPECT_LE(largest_ratio(batch.smoothed[i].sd - rts[i].sd, rts[i].sd), 1e-6) << i;
   }

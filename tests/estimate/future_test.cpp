@@ -132,7 +132,8 @@ TEST(Future, ContinuesItsOwnRun) {
 }
 
 // Another prior, and so other gains, another nominal trajectory, another linearisation. What is left is of second order in the
-// errors, in sigmas of first order: a tenth of all errors leaves a tenth of it, give or take where the largest one stands.
+// errors, in sigmas of first order: a tenth of all errors leaves a tenth of it, give or take where the largest one stands (a
+// quarter at most; did it not fall with the errors it would be all of it).
 TEST(Future, BelongsToAnyFilter) {
   for (const std::size_t k : {3U, 10U, 19U}) {
     std::array<Differences, 2> left;
@@ -155,9 +156,9 @@ TEST(Future, BelongsToAnyFilter) {
       EXPECT_GT(of_first.position, 1.0);  // the prior matters
       EXPECT_GT(of_first.sigmas, 0.3);
     }
-    EXPECT_LE(left[1].position, 0.2 * left[0].position) << k;
-    EXPECT_LE(left[1].others, 0.2 * left[0].others) << k;
-    EXPECT_LE(left[1].sigmas, 0.2 * left[0].sigmas) << k;
+    EXPECT_LE(left[1].position, 0.25 * left[0].position) << k;
+    EXPECT_LE(left[1].others, 0.25 * left[0].others) << k;
+    EXPECT_LE(left[1].sigmas, 0.25 * left[0].sigmas) << k;
     EXPECT_LE(std::max({left[0].position, left[0].others, left[0].sigmas}), 0.03) << k;
   }
 }

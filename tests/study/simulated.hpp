@@ -5,7 +5,7 @@
 
 #include "coast/io/yaml.hpp"
 #include "coast/simulate/scenario.hpp"
-#include "coast/study/mission.hpp"
+#include "coast/study/solution.hpp"
 
 namespace coast::test {
 

@@ -29,6 +29,9 @@ class Navigator {
 
   /// One step with an increment as recorded (body axes). @return what the covariance needs of it
   const SampleDynamics& propagate(const ins::RawIncrement& raw);
+  /// The two parts of an increment as recorded that a knot inside it makes.
+  /// @param fraction  of its interval, of the first part
+  [[nodiscard]] ins::SplitIncrement split(const ins::RawIncrement& raw, double fraction) const;
   /// Moves the estimated sensor states over the time since the last call. Call where the transition is folded.
   void advance_sensor_states();
   void set_time(geo::GpsTime t) { strapdown_.set_time(t); }
@@ -44,6 +47,8 @@ class Navigator {
 
  private:
   void refresh_corrections();
+  /// Freed of the estimated errors.
+  [[nodiscard]] ins::RawIncrement without_errors(const ins::RawIncrement& raw) const;
 
   const StateLayout& layout_;
   ins::IncrementKind kind_;

@@ -4,8 +4,8 @@
 #include <functional>
 #include <vector>
 
-#include "coast/study/mission.hpp"
 #include "coast/study/outage.hpp"
+#include "coast/study/solution.hpp"
 
 namespace coast::study {
 
