@@ -89,6 +89,11 @@ int run(int argc, char** argv) {
   process->add_option("run", input, "run.yaml")->required();
   process->callback([&] { coast::cli::process(input, common); });
 
+  auto* diagnose = subcommand(app, "diagnose", "what the configured model leaves out: where, what, how sure, what it gains",
+                              "coast diagnose run.yaml --out diagnosis", common);
+  diagnose->add_option("run", input, "run.yaml, as for `coast process`")->required();
+  diagnose->callback([&] { coast::cli::diagnose(input, common); });
+
   auto* simulate = subcommand(app, "simulate", "trajectory + sensors -> a recording with its truth",
                               "coast simulate configs/scenarios/car_roundabout.yaml --out recording --seed 7", common);
   simulate->add_option("scenario", input, "scenario.yaml")->required();

@@ -16,12 +16,15 @@ class BackwardRecursion {
   void through_transition(const Knot& knot);
   /// A knot's updates, the last one first, and what happened to the carrier slots before them.
   void through_updates(const Knot& knot);
+  /// One of them.
+  void through_update(const AppliedUpdate& update);
   /// These hold behind the knot's updates.
   [[nodiscard]] SmoothedKnot smoothed(const Knot& knot, bool with_states) const;
   [[nodiscard]] Future future(const Knot& knot) const;
+  [[nodiscard]] const Eigen::VectorXd& r() const { return r_; }
+  [[nodiscard]] const Eigen::MatrixXd& N() const { return N_; }
 
  private:
-  void through_update(const AppliedUpdate& update);
   void through_slot_changes(const Eigen::VectorXd& factors);
   void times_phi(const Knot& knot);
 

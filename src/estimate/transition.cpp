@@ -42,9 +42,7 @@ void TransitionAccumulator::reset() {
 }
 
 void TransitionAccumulator::clear_pending() {
-  pending_ = 0.0;
-  sum_f_.setZero();
-  double_f_.setZero();
+  fold_ = {};
   sum_C_.setZero();
   if (!multiplicative_) return;
   for (std::size_t k = 0; k < 3; ++k) {
@@ -54,10 +52,8 @@ void TransitionAccumulator::clear_pending() {
 }
 
 void TransitionAccumulator::add(const SampleDynamics& s) {
-  double_f_ += s.dt * (sum_f_ + 0.5 * s.dv_e);
-  sum_f_ += s.dv_e;
+  fold_.add(s);
   sum_C_ += s.dt * s.C_b_e;
-  pending_ += s.dt;
   if (!multiplicative_) return;
   for (int k = 0; k < 3; ++k) {
     sum_C_dtheta_[static_cast<std::size_t>(k)] += s.dtheta_b(k) * s.C_b_e;
@@ -65,42 +61,8 @@ void TransitionAccumulator::add(const SampleDynamics& s) {
   }
 }
 
-// Multiplies rows (9 x any) from the left with the transition over the pending interval.
-template <typename Rows>
-void TransitionAccumulator::advance(Rows& rows, const Eigen::Matrix3d& G) const {
-  const double h = pending_;
-  const double wh = earth_rate_ * h;
-  auto r = rows.template middleRows<3>(kPos);
-  auto v = rows.template middleRows<3>(kVel);
-  auto psi = rows.template middleRows<3>(kPsi);
-
-  const auto gravity_kick = [&](double dt) {
-    for (int i = 0; i < 3; ++i) v.row(i) += (dt * G(i, 0)) * r.row(0) + (dt * G(i, 1)) * r.row(1) + (dt * G(i, 2)) * r.row(2);
-  };
-  // Earth rotation; taking the new first component for the second costs (angle)^2, 1e-11 a fold, and needs no temporary.
-  const auto turn = [](auto block, double angle) {
-    block.row(0) += angle * block.row(1);
-    block.row(1) -= angle * block.row(0);
-  };
-  const auto minus_cross_psi = [&](auto block, const Eigen::Vector3d& a) {  // block -= [a x] psi
-    block.row(0) += a.z() * psi.row(1) - a.y() * psi.row(2);
-    block.row(1) += a.x() * psi.row(2) - a.z() * psi.row(0);
-    block.row(2) += a.y() * psi.row(0) - a.x() * psi.row(1);
-  };
-
-  gravity_kick(0.5 * h);
-  r += h * v;
-  minus_cross_psi(r, double_f_);
-  turn(v, 2.0 * wh);
-  turn(psi, 0.5 * wh);
-  minus_cross_psi(v, sum_f_);  // psi at mid-interval
-  turn(psi, 0.5 * wh);
-  gravity_kick(0.5 * h);
-}
-
 void TransitionAccumulator::add_sensor_columns() {
-  const double h = pending_;
-  over_half_fold_.over(0.5 * h);
+  over_half_fold_.over(0.5 * fold_.h);
   middle_ = output_;
   over_half_fold_.apply_to_row(middle_);
   output_ = middle_;
@@ -118,30 +80,17 @@ void TransitionAccumulator::add_sensor_columns() {
     }
     for (int j = block.offset - kNav; j < block.offset - kNav + block.size; ++j) effect_.col(j) = middle_(j) * column;
   }
-  // Gyro: psi takes the effect, velocity half the cross product with it, position a sixth; accelerometer: velocity, half.
-  const auto gyro = [this](auto&& rows) { return rows.middleCols(kNav, gyro_states_); };
-  const auto accel = [this](auto&& rows) { return rows.rightCols(output_.size() - gyro_states_); };
-  const auto effect_g = effect_.leftCols(gyro_states_);
-  const auto effect_a = effect_.rightCols(output_.size() - gyro_states_);
-  const auto add_tilt = [&](int first, double factor) {
-    const Eigen::Vector3d f = factor * sum_f_;
-    gyro(Phi_n_.row(first)) += f.y() * effect_g.row(2) - f.z() * effect_g.row(1);
-    gyro(Phi_n_.row(first + 1)) += f.z() * effect_g.row(0) - f.x() * effect_g.row(2);
-    gyro(Phi_n_.row(first + 2)) += f.x() * effect_g.row(1) - f.y() * effect_g.row(0);
-  };
-  gyro(Phi_n_.middleRows<3>(kPsi)) -= effect_g;
-  add_tilt(kVel, 0.5);
-  add_tilt(kPos, h / 6.0);
-  accel(Phi_n_.middleRows<3>(kVel)) -= effect_a;
-  accel(Phi_n_.middleRows<3>(kPos)) -= (0.5 * h) * effect_a;
+  const auto accel_states = output_.size() - gyro_states_;
+  fold_.add_gyro_errors(Phi_n_.middleCols(kNav, gyro_states_), effect_.leftCols(gyro_states_));
+  fold_.add_accel_errors(Phi_n_.rightCols(accel_states), effect_.rightCols(accel_states));
 }
 
 void TransitionAccumulator::add_white_noise() {
-  const double h = pending_;
+  const double h = fold_.h;
   const Eigen::Matrix3d C = sum_C_ / h;
   const Eigen::Matrix3d q_a = h * (C * accel_density_b_ * C.transpose());
   const Eigen::Matrix3d q_g = h * (C * gyro_density_b_ * C.transpose());
-  const Eigen::Matrix3d A = geo::skew(sum_f_);
+  const Eigen::Matrix3d A = geo::skew(fold_.sum_f);
   const Eigen::Matrix3d v_psi = -0.5 * (A * q_g);
   Q_n_.block<3, 3>(kPos, kPos) += (h * h / 3.0) * q_a;
   Q_n_.block<3, 3>(kPos, kVel) += (h / 2.0) * q_a;
@@ -153,14 +102,14 @@ void TransitionAccumulator::add_white_noise() {
 }
 
 void TransitionAccumulator::fold(const Eigen::Matrix3d& gravity_gradient) {
-  if (!(pending_ > 0.0)) return;
-  advance(Phi_n_, gravity_gradient);
+  if (!(fold_.h > 0.0)) return;
+  fold_.advance(Phi_n_, gravity_gradient, earth_rate_);
   add_sensor_columns();
-  advance(Q_n_, gravity_gradient);
+  fold_.advance(Q_n_, gravity_gradient, earth_rate_);
   Q_n_.transposeInPlace();
-  advance(Q_n_, gravity_gradient);
+  fold_.advance(Q_n_, gravity_gradient, earth_rate_);
   add_white_noise();
-  elapsed_ += pending_;
+  elapsed_ += fold_.h;
   clear_pending();
 }
 

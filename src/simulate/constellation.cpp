@@ -6,7 +6,7 @@
 
 #include "coast/carrier/orbits.hpp"
 #include "coast/geo/units.hpp"
-#include "random.hpp"
+#include "coast/simulate/random.hpp"
 
 namespace coast::simulate {
 

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <stdexcept>
 
-#include "random.hpp"
+#include "coast/simulate/random.hpp"
 
 namespace coast::simulate {
 namespace {

@@ -17,7 +17,7 @@
 #include "coast/carrier/wind_up.hpp"
 #include "coast/geo/units.hpp"
 #include "constellation.hpp"
-#include "random.hpp"
+#include "coast/simulate/random.hpp"
 
 namespace coast::simulate {
 

@@ -7,7 +7,7 @@
 #include <random>
 #include <vector>
 
-#include "random.hpp"
+#include "coast/simulate/random.hpp"
 
 namespace coast::simulate {
 namespace {

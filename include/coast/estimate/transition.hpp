@@ -22,6 +22,29 @@ struct SampleDynamics {
   Eigen::Vector3d dv_b;      ///< specific-force increment in b, m/s
 };
 
+/// The sums of some samples that move the navigation errors as one step.
+struct Fold {
+  double h = 0.0;                                      ///< its length, s
+  Eigen::Vector3d sum_f = Eigen::Vector3d::Zero();     ///< integral of C f
+  Eigen::Vector3d double_f = Eigen::Vector3d::Zero();  ///< its double integral
+
+  void add(const SampleDynamics& sample) {
+    double_f += sample.dt * (sum_f + 0.5 * sample.dv_e);
+    sum_f += sample.dv_e;
+    h += sample.dt;
+  }
+  /// rows <- transition of the navigation errors over the fold times rows (9 x any). @param G  dg/dr, 1/s^2
+  template <typename Rows>
+  void advance(Rows& rows, const Eigen::Matrix3d& G, double earth_rate) const;
+  /// What errors of sensor errors do by the end of the fold. Gyro: attitude takes the effect, velocity half the cross product
+  /// with it, position a sixth; accelerometer: velocity, position half.
+  /// @param effect  integral of C times the error over the fold, 3 x any  @param rows  9 x as many
+  template <typename Rows, typename Effect>
+  void add_gyro_errors(Rows&& rows, const Effect& effect) const;
+  template <typename Rows, typename Effect>
+  void add_accel_errors(Rows&& rows, const Effect& effect) const;
+};
+
 /// Composes the transition and the white-noise covariance of the 9 navigation errors
 ///
 ///     dr' = dv
@@ -47,7 +70,7 @@ class TransitionAccumulator {
     accel_density_b_ = accel_density_b;
   }
   void add(const SampleDynamics& sample);
-  [[nodiscard]] bool substep_due() const { return substep_due(pending_); }
+  [[nodiscard]] bool substep_due() const { return substep_due(fold_.h); }
   /// Folds what is pending. @param gravity_gradient dg/dr at the position, 1/s^2
   void fold(const Eigen::Matrix3d& gravity_gradient);
 
@@ -61,8 +84,6 @@ class TransitionAccumulator {
   void propagate_covariance(Eigen::MatrixXd& P);
 
  private:
-  template <typename Rows>
-  void advance(Rows& rows, const Eigen::Matrix3d& gravity_gradient) const;
   void add_sensor_columns();
   void add_driven_covariance(Eigen::MatrixXd& P) const;
   void add_white_noise();
@@ -82,12 +103,60 @@ class TransitionAccumulator {
   double elapsed_ = 0.0;
   bool multiplicative_ = false;  ///< whether any sensor state multiplies a signal
 
-  double pending_ = 0.0;
-  Eigen::Vector3d sum_f_;                        ///< integral of C f
-  Eigen::Vector3d double_f_;                     ///< its double integral
-  Eigen::Matrix3d sum_C_;                        ///< integral of C
+  Fold fold_;                                    ///< pending
+  Eigen::Matrix3d sum_C_;                        ///< integral of C over it
   std::array<Eigen::Matrix3d, 3> sum_C_dtheta_;  ///< sums of C dtheta_k, k = x, y, z of b
   std::array<Eigen::Matrix3d, 3> sum_C_dv_;
 };
+
+template <typename Rows>
+void Fold::advance(Rows& rows, const Eigen::Matrix3d& G, double earth_rate) const {
+  const double wh = earth_rate * h;
+  auto r = rows.template middleRows<3>(kPos);
+  auto v = rows.template middleRows<3>(kVel);
+  auto psi = rows.template middleRows<3>(kPsi);
+
+  const auto gravity_kick = [&](double dt) {
+    for (int i = 0; i < 3; ++i) v.row(i) += (dt * G(i, 0)) * r.row(0) + (dt * G(i, 1)) * r.row(1) + (dt * G(i, 2)) * r.row(2);
+  };
+  // Earth rotation; taking the new first component for the second costs (angle)^2, 1e-11 a fold, and needs no temporary.
+  const auto turn = [](auto block, double angle) {
+    block.row(0) += angle * block.row(1);
+    block.row(1) -= angle * block.row(0);
+  };
+  const auto minus_cross_psi = [&](auto block, const Eigen::Vector3d& a) {  // block -= [a x] psi
+    block.row(0) += a.z() * psi.row(1) - a.y() * psi.row(2);
+    block.row(1) += a.x() * psi.row(2) - a.z() * psi.row(0);
+    block.row(2) += a.y() * psi.row(0) - a.x() * psi.row(1);
+  };
+
+  gravity_kick(0.5 * h);
+  r += h * v;
+  minus_cross_psi(r, double_f);
+  turn(v, 2.0 * wh);
+  turn(psi, 0.5 * wh);
+  minus_cross_psi(v, sum_f);  // psi at mid-interval
+  turn(psi, 0.5 * wh);
+  gravity_kick(0.5 * h);
+}
+
+template <typename Rows, typename Effect>
+void Fold::add_gyro_errors(Rows&& rows, const Effect& effect) const {
+  const auto add_tilt = [&](int first, double factor) {
+    const Eigen::Vector3d f = factor * sum_f;
+    rows.row(first) += f.y() * effect.row(2) - f.z() * effect.row(1);
+    rows.row(first + 1) += f.z() * effect.row(0) - f.x() * effect.row(2);
+    rows.row(first + 2) += f.x() * effect.row(1) - f.y() * effect.row(0);
+  };
+  rows.template middleRows<3>(kPsi) -= effect;
+  add_tilt(kVel, 0.5);
+  add_tilt(kPos, h / 6.0);
+}
+
+template <typename Rows, typename Effect>
+void Fold::add_accel_errors(Rows&& rows, const Effect& effect) const {
+  rows.template middleRows<3>(kVel) -= effect;
+  rows.template middleRows<3>(kPos) -= (0.5 * h) * effect;
+}
 
 }  // namespace coast::estimate

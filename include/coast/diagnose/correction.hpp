@@ -1,0 +1,37 @@
+#pragma once
+// Recordings and setup with found effects taken out.
+
+#include <optional>
+#include <vector>
+
+#include "coast/diagnose/hypotheses.hpp"
+#include "coast/study/mission.hpp"
+
+namespace coast::diagnose {
+
+/// A hypothesis taken for true, with its size.
+struct Taken {
+  Eigen::Index hypothesis = 0;
+  std::optional<geo::GpsTime> from;  ///< the whole mission where absent
+  std::optional<geo::GpsTime> to;
+  double value = 0.0;
+  [[nodiscard]] bool holds(geo::GpsTime t) const { return (!from || t >= *from) && (!to || t < *to); }
+};
+
+/// What is filtered.
+struct MissionInput {
+  record::ImuRecording imu;  ///< body axes
+  record::GnssRecording gnss;
+  study::Setup setup;
+};
+
+/// The input as it would have been without the effects. Effects that the configuration has a place for, and that last the whole
+/// mission, go there.
+/// @param path    trajectory that rates, forces and directions are taken along, at IMU epochs; fixes outside it stay as they
+/// are
+/// @param layout  of the filter that made it
+[[nodiscard]] MissionInput without(const std::vector<Taken>& taken, const MissionInput& input, const Hypotheses& hypotheses,
+                                   const std::vector<record::NavState>& path, const estimate::Mission& mission,
+                                   const estimate::StateLayout& layout);
+
+}  // namespace coast::diagnose

@@ -1,0 +1,88 @@
+#pragma once
+// The search for what the configured model leaves out.
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "coast/diagnose/correction.hpp"
+#include "coast/diagnose/examination.hpp"
+
+namespace coast::diagnose {
+
+/// An explanation that the data cannot exclude beside the one given.
+struct Alternative {
+  Hypothesis hypothesis;
+  std::optional<geo::GpsTime> from;
+  double log_odds = 0.0;  ///< natural logarithm, for the effect found against this one
+};
+
+/// An effect found.
+struct Finding {
+  Hypothesis hypothesis;
+  std::optional<geo::GpsTime> from;  ///< the whole mission where absent
+  std::optional<geo::GpsTime> to;
+  double from_sd_s = 0.0;  ///< of `from`
+  double value = 0.0;
+  double sd = 0.0;
+  double delta_log_likelihood = 0.0;  ///< realised: runs with and without it, all others as they are
+  double p_value = 1.0;
+  std::vector<Alternative> alternatives;
+};
+
+/// What would have been found of an effect that was not.
+struct Detectable {
+  Hypothesis hypothesis;
+  double minimal = 0.0;
+};
+struct NotObservable {
+  Hypothesis hypothesis;
+  std::string reason;
+};
+
+/// Noise that differs from what is stated.
+struct NoiseFinding {
+  std::string name;  ///< of the catalogue: gnss_sd_optimistic, gnss_correlated_error, or imu_white_noise
+  std::string sensor;
+  std::string axis;
+  std::string parameter;
+  std::string unit;
+  double value = 0.0;
+  double sd = 0.0;
+  double delta_log_likelihood = 0.0;
+  double p_value = 1.0;
+};
+
+/// Fit of one run.
+struct Fit {
+  double log_likelihood_per_epoch = 0.0;
+  double nis = 0.0;           ///< mean over degrees of freedom
+  double outage_rms_m = 0.0;  ///< horizontal maxima of forward outages, against the run's own smoothed trajectory
+};
+
+struct Diagnosis {
+  std::vector<Finding> findings;
+  std::vector<NoiseFinding> noise;
+  std::vector<Detectable> detectable_not_found;
+  std::vector<NotObservable> not_observable;
+  Grade grade = Grade::kIndustrial;
+  double threshold = 0.0;  ///< of the likelihood ratio, 5 % of clean recordings exceed it
+  Fit before;
+  Fit after;
+  std::size_t runs = 0;
+  MissionInput modelled;  ///< with what was found taken out
+};
+
+struct DiagnosisOptions {
+  double false_alarm_probability = 0.05;  ///< of a recording in which nothing is missing
+  int most_effects = 6;
+  std::uint64_t seed = 1;
+};
+
+/// Stepwise: the mission is run; of all hypotheses beside those taken the likeliest by Bayes factor is taken where the largest
+/// likelihood ratio exceeds what chance allows; coefficients of all taken follow (Gauss-Newton), and the mission is run again
+/// without them, until nothing more exceeds. Noise is fitted first where innovations contradict theirs by more than the largest
+/// mean effect explains.
+[[nodiscard]] Diagnosis diagnose(const MissionInput& input, const DiagnosisOptions& options, const study::Progress& progress);
+
+}  // namespace coast::diagnose

@@ -1,0 +1,74 @@
+#pragma once
+// What one run of the filter says of every hypothesis, and how large the largest may be by chance.
+
+#include <optional>
+#include <vector>
+
+#include "coast/diagnose/hypotheses.hpp"
+#include "coast/study/solution.hpp"
+
+namespace coast::diagnose {
+
+/// Scores and information of the coefficients about zero, effect = coefficient times column:
+/// log-likelihood ratio = score' c - c' information c / 2.
+struct Examination {
+  /// Of effects that last the whole mission (of all hypotheses; rows of those that begin at some time mean: from its start).
+  Eigen::VectorXd score;
+  Eigen::MatrixXd information;
+  Eigen::MatrixXd null_score;  ///< by draws of the innovations from their own covariance, a column each
+
+  /// Of those that begin at some time, at every instant at which they can be told.
+  struct Track {
+    Eigen::Index hypothesis = 0;
+    std::vector<geo::GpsTime> t;  ///< ascending
+    std::vector<double> score;
+    std::vector<double> information;
+    Eigen::VectorXd null_largest;  ///< likelihood ratio, the largest of each draw over all instants
+  };
+  std::vector<Track> tracks;
+};
+
+struct ExaminationOptions {
+  Eigen::Index draws = 400;
+  std::uint64_t seed = 1;
+};
+
+/// @param knots  of a forward pass with the layout
+[[nodiscard]] Examination examine(const estimate::Mission& mission, const estimate::StateLayout& layout,
+                                  const estimate::KnotStore& knots, const Hypotheses& hypotheses,
+                                  const ExaminationOptions& options, const std::function<void(double)>& progress = {});
+
+/// One hypothesis as the data see it by itself, beside those that are taken for true already.
+struct Suspicion {
+  Eigen::Index hypothesis = 0;
+  std::optional<geo::GpsTime> from;  ///< where it begins at some time
+  double estimate = 0.0;
+  double sd = 0.0;
+  double likelihood_ratio = 0.0;  ///< twice the logarithm
+  double log_bayes = 0.0;         ///< of the effect with its plausible size against none
+  double p_value = 1.0;           ///< that the largest of all is as large by chance
+};
+
+/// The distribution of the largest likelihood ratio of all hypotheses and instants where nothing is missing: that of the
+/// largest of `count` independent squares of standard normal numbers, the count fitted to the median of the draws.
+struct LargestByChance {
+  double count = 1.0;
+  [[nodiscard]] double p_value(double likelihood_ratio) const;
+  /// Likelihood ratio that is exceeded with this probability.
+  [[nodiscard]] double quantile(double probability) const;
+};
+
+struct Suspicions {
+  std::vector<Suspicion> all;  ///< by hypothesis; what cannot be seen at all is left out
+  LargestByChance chance;
+  Eigen::MatrixXd correlation;  ///< of the whole-mission estimates with each other, all hypotheses; 1 or -1: the same
+};
+/// @param taken  hypotheses of the whole mission that are estimated beside each one
+[[nodiscard]] Suspicions suspicions(const Examination& examination, const Hypotheses& hypotheses,
+                                    const std::vector<Eigen::Index>& taken);
+
+/// Smallest coefficient that is found with probability 0.8 where a likelihood ratio of `threshold` is asked for (Baarda's
+/// minimal detectable bias). @param sd  of its estimate
+[[nodiscard]] double minimal_detectable(double sd, double threshold);
+
+}  // namespace coast::diagnose

@@ -1,0 +1,66 @@
+#pragma once
+// The catalogue applied to one recording: every coefficient that it could show, and what a unit of each does to its samples.
+
+#include <vector>
+
+#include "coast/diagnose/effect.hpp"
+#include "coast/estimate/effect_pass.hpp"
+
+namespace coast::diagnose {
+
+/// One coefficient of one effect.
+struct Hypothesis {
+  const Effect* effect = nullptr;
+  Eigen::Index axis = 0;
+  double plausible = 0.0;  ///< standard deviation of its prior
+  [[nodiscard]] bool begins_at_some_time() const { return effect->begins == Effect::Begins::kAtSomeTime; }
+  [[nodiscard]] const std::string& axis_name() const { return effect->axes[static_cast<std::size_t>(axis)]; }
+};
+
+/// Signals of a recording that no single sample shows, computed once.
+class SignalTable {
+ public:
+  /// @param imu  body axes; must outlive the table
+  SignalTable(const record::ImuRecording& imu, const Eigen::Matrix3d& C_s_b);
+  [[nodiscard]] bool has_temperature() const { return !imu_.temperature.empty(); }
+  /// @param omega_b, f_b  of the sample, body axes, freed of errors where they are known  @param nav  near it
+  [[nodiscard]] Signals at(std::size_t sample, const Eigen::Vector3d& omega_b, const Eigen::Vector3d& f_b,
+                           const record::NavState& nav) const;
+  /// Specific force over a tenth of a second about the beginning of a sample, body axes, m/s^2.
+  [[nodiscard]] Eigen::Vector3d mean_force_b(std::size_t sample) const;
+
+ private:
+  const record::ImuRecording& imu_;
+  Eigen::Matrix3d C_b_s_;
+  std::size_t half_;  ///< samples on either side of a mean
+  std::vector<Eigen::Vector3f> vibration_;
+  std::vector<float> temperature_rate_;
+  double mean_temperature_ = 0.0;
+};
+
+/// All coefficients side by side, as the pass over the knots wants them.
+class Hypotheses : public estimate::Effects {
+ public:
+  /// Those that need what the recording does not have are left out. @param mission  must outlive the set
+  Hypotheses(const estimate::Mission& mission, Grade grade);
+
+  [[nodiscard]] Eigen::Index size() const override { return static_cast<Eigen::Index>(all_.size()); }
+  [[nodiscard]] const std::vector<Hypothesis>& all() const { return all_; }
+  [[nodiscard]] const Hypothesis& operator[](Eigen::Index i) const { return all_[static_cast<std::size_t>(i)]; }
+  void add_sensor_errors(const estimate::SampleView& sample, Eigen::Matrix3Xd& gyro_b,
+                         Eigen::Matrix3Xd& accel_b) const override;
+  void add_measurement_errors(const estimate::MeasurementView& measurement, Eigen::MatrixXd& D) const override;
+
+ private:
+  struct Part {
+    const Effect* effect;
+    Eigen::Index first;  ///< of its columns
+    Eigen::Index count;
+  };
+  const estimate::Mission& mission_;
+  SignalTable signals_;
+  std::vector<Hypothesis> all_;
+  std::vector<Part> parts_;
+};
+
+}  // namespace coast::diagnose

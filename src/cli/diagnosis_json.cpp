@@ -1,0 +1,112 @@
+#include "diagnosis_json.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+namespace coast::cli {
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+using diagnose::Hypothesis;
+
+Json hypothesis_json(const Hypothesis& h) {
+  return {{"name", h.effect->name}, {"sensor", diagnose::name(h.effect->site)}, {"axis", h.axis_name()}};
+}
+
+std::string full_name(const Hypothesis& h) {
+  return fmt::format("{}{}{}", h.effect->name, h.axis_name().empty() ? "" : " ", h.axis_name());
+}
+
+Json finding_json(const diagnose::Finding& f, double start_s, double end_s) {
+  Json j = hypothesis_json(f.hypothesis);
+  j["t_start_s"] = f.from ? f.from->sow() : start_s;
+  j["t_end_s"] = f.to ? f.to->sow() : end_s;
+  if (f.from) j["t_start_std_s"] = f.from_sd_s;
+  j["parameters"] = Json::array(
+      {{{"name", f.hypothesis.effect->parameter}, {"value", f.value}, {"std", f.sd}, {"unit", f.hypothesis.effect->unit}}});
+  j["delta_log_likelihood"] = f.delta_log_likelihood;
+  j["p_value"] = f.p_value;
+  j["explanation"] = explanation(f);
+  j["confounded_with"] = Json::array();
+  for (const diagnose::Alternative& a : f.alternatives) {
+    Json other = hypothesis_json(a.hypothesis);
+    other["log_odds"] = a.log_odds;
+    other["separating_manoeuvre"] = f.hypothesis.effect->separating_manoeuvre;
+    j["confounded_with"].push_back(other);
+  }
+  return j;
+}
+
+Json noise_json(const diagnose::NoiseFinding& f, double start_s, double end_s) {
+  Json j = {{"name", f.name}, {"sensor", f.sensor}, {"axis", f.axis}, {"t_start_s", start_s}, {"t_end_s", end_s}};
+  j["parameters"] = Json::array({{{"name", f.parameter}, {"value", f.value}, {"std", f.sd}, {"unit", f.unit}}});
+  j["delta_log_likelihood"] = f.delta_log_likelihood;
+  j["p_value"] = f.p_value;
+  j["explanation"] = "The innovations are likelier with this noise than with the one stated.";
+  j["confounded_with"] = Json::array();
+  return j;
+}
+
+}  // namespace
+
+std::string explanation(const diagnose::Finding& f) {
+  const diagnose::Effect& effect = *f.hypothesis.effect;
+  std::string text = fmt::format("{} {}: {} = {:.3g} +- {:.2g} {}.", effect.meaning, effect.equation, effect.parameter, f.value,
+                                 f.sd, effect.unit);
+  if (!f.alternatives.empty()) {
+    text += " It could also be";
+    for (std::size_t i = 0; i < std::min<std::size_t>(3, f.alternatives.size()); ++i)
+      text += fmt::format("{} {} (1 : {:.0f})", i == 0 ? "" : ",", full_name(f.alternatives[i].hypothesis),
+                          std::exp(f.alternatives[i].log_odds));
+    text += fmt::format(". What would tell: {}", effect.separating_manoeuvre);
+  }
+  return text;
+}
+
+std::string diagnosis_json(const diagnose::Diagnosis& d, const diagnose::MissionInput& input) {
+  const double start = input.imu.samples.front().t.sow();
+  const double end = input.imu.samples.back().t.sow();
+  Json j;
+  j["schema"] = "coast.diagnosis/1";
+  j["mismatch"] = !d.findings.empty() || !d.noise.empty();
+  j["reference_used"] = false;
+  j["effects"] = Json::array();
+  for (const diagnose::Finding& f : d.findings) j["effects"].push_back(finding_json(f, start, end));
+  for (const diagnose::NoiseFinding& f : d.noise) j["effects"].push_back(noise_json(f, start, end));
+  j["detectable_not_found"] = Json::array();
+  for (const diagnose::Detectable& one : d.detectable_not_found) {
+    Json entry = hypothesis_json(one.hypothesis);
+    entry["minimal"] = one.minimal;
+    entry["unit"] = one.hypothesis.effect->unit;
+    j["detectable_not_found"].push_back(entry);
+  }
+  j["not_observable"] = Json::array();
+  for (const diagnose::NotObservable& one : d.not_observable) {
+    Json entry = hypothesis_json(one.hypothesis);
+    entry["reason"] = one.reason;
+    j["not_observable"].push_back(entry);
+  }
+  j["verification"] = {{"log_likelihood_per_epoch", {d.before.log_likelihood_per_epoch, d.after.log_likelihood_per_epoch}},
+                       {"nis", {d.before.nis, d.after.nis}},
+                       {"outage_rms_m", {d.before.outage_rms_m, d.after.outage_rms_m}}};
+  j["grade"] = diagnose::name(d.grade);
+  j["threshold"] = d.threshold;
+  j["runs"] = d.runs;
+  return j.dump(1) + "\n";
+}
+
+std::string diagnosis_text(const diagnose::Diagnosis& d) {
+  if (d.findings.empty() && d.noise.empty()) return "Nothing is missing from the model that this mission could show.\n";
+  std::string text;
+  for (const diagnose::Finding& f : d.findings)
+    text += fmt::format("{}{}: {}\n", full_name(f.hypothesis),
+                        f.from ? fmt::format(" from {:.1f} s", f.from->sow()) : std::string(), explanation(f));
+  for (const diagnose::NoiseFinding& f : d.noise)
+    text += fmt::format("{} {} {}: {} = {:.3g} +- {:.2g} {}\n", f.name, f.sensor, f.axis, f.parameter, f.value, f.sd, f.unit);
+  return text;
+}
+
+}  // namespace coast::cli

@@ -1,0 +1,94 @@
+#include "coast/diagnose/correction.hpp"
+
+#include <algorithm>
+
+#include "coast/geo/earth.hpp"
+
+namespace coast::diagnose {
+
+namespace {
+
+/// Coefficients that hold at an instant.
+Eigen::VectorXd coefficients_at(geo::GpsTime t, const std::vector<Taken>& taken, Eigen::Index size) {
+  Eigen::VectorXd c = Eigen::VectorXd::Zero(size);
+  for (const Taken& one : taken)
+    if (one.holds(t)) c(one.hypothesis) += one.value;
+  return c;
+}
+
+const record::NavState& nearest(const std::vector<record::NavState>& path, geo::GpsTime t) {
+  auto behind = std::ranges::lower_bound(path, t, {}, &record::NavState::t);
+  if (behind == path.end()) --behind;
+  if (behind != path.begin() && t - std::prev(behind)->t < behind->t - t) --behind;
+  return *behind;
+}
+
+void correct_samples(const std::vector<Taken>& taken, const Hypotheses& hypotheses, const std::vector<record::NavState>& path,
+                     record::ImuRecording& imu) {
+  Eigen::Matrix3Xd gyro(3, hypotheses.size());
+  Eigen::Matrix3Xd accel(3, hypotheses.size());
+  const record::ImuRecording recorded = imu;
+  for (std::size_t i = 0; i < imu.samples.size(); ++i) {
+    record::ImuSample& sample = imu.samples[i];
+    const Eigen::VectorXd c = coefficients_at(sample.t, taken, hypotheses.size());
+    if (c.isZero(0.0)) continue;
+    gyro.setZero();
+    accel.setZero();
+    hypotheses.add_sensor_errors({i, sample.dtheta / sample.dt, sample.dv / sample.dt, nearest(path, sample.t)}, gyro, accel);
+    sample.dtheta -= sample.dt * (gyro * c);
+    sample.dv -= sample.dt * (accel * c);
+  }
+}
+
+void correct_fixes(const std::vector<Taken>& taken, const Hypotheses& hypotheses, const std::vector<record::NavState>& path,
+                   const estimate::Mission& mission, const estimate::StateLayout& layout, record::GnssRecording& gnss) {
+  const std::vector<record::ImuSample>& samples = mission.imu.samples;
+  const Eigen::Vector3d earth_e(0.0, 0.0, mission.earth_rate);
+  Eigen::MatrixXd D(3, hypotheses.size());
+  for (record::GnssFix& fix : gnss.fixes) {
+    const geo::GpsTime t = fix.t - mission.time_offset_s;
+    if (t < path.front().t || t > path.back().t) continue;
+    const Eigen::VectorXd c = coefficients_at(t, taken, hypotheses.size());
+    if (c.isZero(0.0)) continue;
+    const auto sample = std::min(std::ranges::upper_bound(samples, t, {}, &record::ImuSample::t), samples.end() - 1);
+    const record::NavState& nav = nearest(path, t);
+    const Eigen::Matrix3d C_n_e = geo::C_n_e(geo::geodetic_from_ecef(nav.r_eb_e));
+    const estimate::UpdateContext context{
+        layout, mission.lever_arm_b, sample->dtheta / sample->dt - nav.q_b_e.toRotationMatrix().transpose() * earth_e, C_n_e};
+    estimate::MeasurementView view{estimate::UpdateKind::kGnssPosition, static_cast<std::size_t>(sample - samples.begin()), nav,
+                                   context};
+    D.setZero();
+    hypotheses.add_measurement_errors(view, D);
+    fix.r_ea_e -= D * c;
+    if (!fix.velocity) continue;
+    view.kind = estimate::UpdateKind::kGnssVelocity;
+    D.setZero();
+    hypotheses.add_measurement_errors(view, D);
+    fix.velocity->v_ea_n -= C_n_e.transpose() * (D * c);
+  }
+}
+
+}  // namespace
+
+MissionInput without(const std::vector<Taken>& taken, const MissionInput& input, const Hypotheses& hypotheses,
+                     const std::vector<record::NavState>& path, const estimate::Mission& mission,
+                     const estimate::StateLayout& layout) {
+  MissionInput result = input;
+  std::vector<Taken> in_recordings;
+  for (const Taken& one : taken) {
+    const Hypothesis& h = hypotheses[one.hypothesis];
+    if (!h.effect->configure || one.from) {
+      in_recordings.push_back(one);
+      continue;
+    }
+    Eigen::VectorXd value = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(h.effect->axes.size()));
+    value(h.axis) = one.value;
+    h.effect->configure(result.setup, value);
+  }
+  if (in_recordings.empty() || path.empty()) return result;
+  correct_samples(in_recordings, hypotheses, path, result.imu);
+  correct_fixes(in_recordings, hypotheses, path, mission, layout, result.gnss);
+  return result;
+}
+
+}  // namespace coast::diagnose

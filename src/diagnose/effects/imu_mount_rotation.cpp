@@ -1,0 +1,26 @@
+#include "effects.hpp"
+
+namespace coast::diagnose {
+
+Effect imu_mount_rotation() {
+  return {
+      .name = "imu_mount_rotation",
+      .site = Site::kMount,
+      .begins = Effect::Begins::kAtSomeTime,
+      .parameter = "angle",
+      .unit = "rad",
+      .equation = "from t0 on d(omega) = -theta x omega, d(f) = -theta x f: both triads turned by theta",
+      .meaning = "The IMU turns on its mount and stays turned.",
+      .separating_manoeuvre = "Accelerations along known directions before and behind the slip.",
+      .source = "small rotation of the sensor axes",
+      .axes = three_axes(),
+      .plausible = {0.01, 0.01, 0.01, 0.01},
+      .sensors =
+          [](const Signals& s, Columns gyro, Columns accel) {
+            gyro = geo::skew(s.omega);
+            accel = geo::skew(s.f);
+          },
+  };
+}
+
+}  // namespace coast::diagnose

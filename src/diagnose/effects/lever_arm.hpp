@@ -1,0 +1,11 @@
+#pragma once
+// What a shift of the antenna on the body does to positions and velocities; private to the room.
+
+#include "effects.hpp"
+
+namespace coast::diagnose {
+
+void lever_arm_position(const FixSignals& s, Columns D);
+void lever_arm_velocity(const FixSignals& s, Columns D);
+
+}  // namespace coast::diagnose

@@ -1,0 +1,186 @@
+#include "coast/diagnose/examination.hpp"
+
+#include <Eigen/Cholesky>
+#include <algorithm>
+#include <cmath>
+
+#include "coast/noise/chi_square.hpp"
+#include "coast/simulate/random.hpp"
+
+namespace coast::diagnose {
+
+namespace {
+
+// An effect of which less is known than three times what is plausible cannot be told from nothing there.
+constexpr double kBlind = 3.0;
+
+class Recorder {
+ public:
+  Recorder(const Hypotheses& hypotheses, Eigen::Index draws, Examination& into) : hypotheses_(hypotheses), into_(into) {
+    for (Eigen::Index i = 0; i < hypotheses.size(); ++i)
+      if (hypotheses[i].begins_at_some_time()) into.tracks.push_back({i, {}, {}, {}, Eigen::VectorXd::Zero(draws)});
+  }
+  void add(const estimate::Evidence& e) {
+    into_.score = -e.r_effects;
+    into_.information = e.N_effects;
+    into_.null_score = -e.null_r_effects;
+    for (Examination::Track& track : into_.tracks) {
+      const Eigen::Index i = track.hypothesis;
+      const double information = e.N_effects(i, i);
+      const double plausible = kBlind * hypotheses_[i].plausible;
+      if (information * plausible * plausible < 1.0) continue;
+      track.t.push_back(e.t);
+      track.score.push_back(-e.r_effects(i));
+      track.information.push_back(information);
+      track.null_largest = track.null_largest.cwiseMax(e.null_r_effects.row(i).transpose().cwiseAbs2() / information);
+    }
+  }
+  void finish() {  // the pass went backward
+    for (Examination::Track& track : into_.tracks) {
+      std::ranges::reverse(track.t);
+      std::ranges::reverse(track.score);
+      std::ranges::reverse(track.information);
+    }
+  }
+
+ private:
+  const Hypotheses& hypotheses_;
+  Examination& into_;
+};
+
+/// log of the ratio of the likelihoods of c ~ N(0, plausible^2) and c = 0.
+double log_bayes_factor(double score, double information, double plausible) {
+  const double prior = 1.0 / (plausible * plausible);
+  return 0.5 * (score * score / (information + prior) - std::log1p(information / prior));
+}
+
+/// Scores and information of hypotheses that last the mission, those taken estimated beside them.
+class Conditional {
+ public:
+  Conditional(const Examination& e, const std::vector<Eigen::Index>& taken) : e_(e), taken_(taken) {
+    if (taken.empty()) return;
+    scale_ = e.information.diagonal()(taken).cwiseSqrt().cwiseInverse();
+    const Eigen::MatrixXd I_aa = scale_.asDiagonal() * e.information(taken, taken) * scale_.asDiagonal();
+    solver_.compute(I_aa);
+    of_taken_ = solver_.solve(Eigen::MatrixXd(scale_.asDiagonal() * e.information(taken, Eigen::all)));
+  }
+  [[nodiscard]] double information(Eigen::Index i, Eigen::Index j) const {
+    if (taken_.empty()) return e_.information(i, j);
+    const Eigen::VectorXd to_i = scale_.cwiseProduct(Eigen::VectorXd(e_.information(taken_, i)));
+    return e_.information(i, j) - to_i.dot(of_taken_.col(j));
+  }
+  [[nodiscard]] double score(Eigen::Index i) const {
+    if (taken_.empty()) return e_.score(i);
+    const Eigen::VectorXd s = scale_.cwiseProduct(Eigen::VectorXd(e_.score(taken_)));
+    return e_.score(i) - of_taken_.col(i).dot(s);
+  }
+  [[nodiscard]] Eigen::VectorXd null_score(Eigen::Index i) const {
+    if (taken_.empty()) return e_.null_score.row(i).transpose();
+    const Eigen::MatrixXd s = scale_.asDiagonal() * Eigen::MatrixXd(e_.null_score(taken_, Eigen::all));
+    return e_.null_score.row(i).transpose() - s.transpose() * of_taken_.col(i);
+  }
+
+ private:
+  const Examination& e_;
+  const std::vector<Eigen::Index>& taken_;
+  Eigen::VectorXd scale_;
+  Eigen::LDLT<Eigen::MatrixXd> solver_;
+  Eigen::MatrixXd of_taken_;  ///< I_aa^-1 I_a, scaled
+};
+
+/// Whether what is left of the information is more than rounding, and tells more than nothing.
+bool is_seen(const Hypothesis& h, double left, double all) {
+  constexpr double kSame = 1e-4;  // of the variance: correlated by 0.99995 with what is taken
+  const double plausible = kBlind * h.plausible;
+  return left > kSame * all && left * plausible * plausible > 1.0;
+}
+
+double median(Eigen::VectorXd values) {
+  const auto middle = values.begin() + values.size() / 2;
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
+
+Suspicion best_of(const Examination::Track& track, const Hypothesis& h) {
+  constexpr double kEpisode = 10.0;  // s; onsets closer than this are hardly different hypotheses
+  std::size_t best = 0;
+  const auto ratio = [&](std::size_t k) { return track.score[k] * track.score[k] / track.information[k]; };
+  for (std::size_t k = 1; k < track.t.size(); ++k)
+    if (ratio(k) > ratio(best)) best = k;
+  const double places = std::max(1.0, (track.t.back() - track.t.front()) / kEpisode);
+  return {.hypothesis = track.hypothesis,
+          .from = track.t[best],
+          .estimate = track.score[best] / track.information[best],
+          .sd = 1.0 / std::sqrt(track.information[best]),
+          .likelihood_ratio = ratio(best),
+          .log_bayes = log_bayes_factor(track.score[best], track.information[best], h.plausible) - std::log(places)};
+}
+
+}  // namespace
+
+Examination examine(const estimate::Mission& mission, const estimate::StateLayout& layout, const estimate::KnotStore& knots,
+                    const Hypotheses& hypotheses, const ExaminationOptions& options,
+                    const std::function<void(double)>& progress) {
+  Examination result;
+  Recorder recorder(hypotheses, options.draws, result);
+  simulate::Normal normal(simulate::stream_seed(options.seed, {1}));
+  estimate::EffectPassOptions pass;
+  pass.draws = options.draws;
+  pass.fill_normal = [&normal](Eigen::Ref<Eigen::MatrixXd> values) {
+    for (double& value : values.reshaped()) value = normal();
+  };
+  pass.progress = progress;
+  estimate::effect_pass(mission, layout, knots, hypotheses, pass, [&](const estimate::Evidence& e) { recorder.add(e); });
+  recorder.finish();
+  return result;
+}
+
+double LargestByChance::p_value(double likelihood_ratio) const {
+  return -std::expm1(count * std::log1p(-noise::chi2_survival(1.0, likelihood_ratio)));
+}
+
+double LargestByChance::quantile(double probability) const {
+  return noise::chi2_upper_quantile(1.0, -std::expm1(std::log1p(-probability) / count));
+}
+
+Suspicions suspicions(const Examination& examination, const Hypotheses& hypotheses, const std::vector<Eigen::Index>& taken) {
+  Suspicions result;
+  const Conditional conditional(examination, taken);
+  Eigen::VectorXd largest = Eigen::VectorXd::Zero(examination.null_score.cols());
+  for (Eigen::Index i = 0; i < hypotheses.size(); ++i) {
+    const Hypothesis& h = hypotheses[i];
+    if (h.begins_at_some_time() || std::ranges::find(taken, i) != taken.end()) continue;
+    const double information = conditional.information(i, i);
+    if (!is_seen(h, information, examination.information(i, i))) continue;
+    const double score = conditional.score(i);
+    largest = largest.cwiseMax(conditional.null_score(i).cwiseAbs2() / information);
+    result.all.push_back({.hypothesis = i,
+                          .from = {},
+                          .estimate = score / information,
+                          .sd = 1.0 / std::sqrt(information),
+                          .likelihood_ratio = score * score / information,
+                          .log_bayes = log_bayes_factor(score, information, h.plausible)});
+  }
+  for (const Examination::Track& track : examination.tracks) {
+    if (track.t.empty()) continue;
+    largest = largest.cwiseMax(track.null_largest);
+    result.all.push_back(best_of(track, hypotheses[track.hypothesis]));
+  }
+  if (largest.size() > 0 && !result.all.empty()) {
+    const double survival = noise::chi2_survival(1.0, median(largest));
+    result.chance.count = std::max(1.0, std::log(0.5) / std::log1p(-survival));
+  }
+  for (Suspicion& s : result.all) s.p_value = result.chance.p_value(s.likelihood_ratio);
+  const Eigen::VectorXd scale = examination.information.diagonal().unaryExpr(
+      [](double information) { return information > 0.0 ? 1.0 / std::sqrt(information) : 0.0; });
+  result.correlation = scale.asDiagonal() * examination.information * scale.asDiagonal();
+  return result;
+}
+
+// Noncentral chi-square with one degree of freedom: sqrt of it is |N(delta, 1)|; the other tail adds nothing.
+double minimal_detectable(double sd, double threshold) {
+  constexpr double kPower = 0.8416;  // the normal quantile of 0.8
+  return sd * (std::sqrt(threshold) + kPower);
+}
+
+}  // namespace coast::diagnose

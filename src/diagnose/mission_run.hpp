@@ -1,0 +1,33 @@
+#pragma once
+// One run of the mission and what it says of the hypotheses; private to the room.
+
+#include <memory>
+
+#include "coast/diagnose/diagnosis.hpp"
+#include "coast/study/outage.hpp"
+
+namespace coast::diagnose {
+
+/// Everything of one run. Stays where it is: the hypotheses refer to its mission.
+class MissionRun {
+ public:
+  MissionRun(MissionInput input, Grade grade, const study::Progress& progress);
+
+  [[nodiscard]] const study::PreparedMission& prepared() const { return mission_; }
+  [[nodiscard]] const estimate::Mission& mission() const { return mission_.mission(); }
+  [[nodiscard]] const study::Solution& solution() const { return solution_; }
+  [[nodiscard]] const estimate::StateLayout& layout() const { return solution_.filter->layout(); }
+  [[nodiscard]] const Hypotheses& hypotheses() const { return hypotheses_; }
+  [[nodiscard]] const std::vector<record::NavState>& path() const { return path_; }
+  [[nodiscard]] double log_likelihood() const { return solution_.forward.log_likelihood; }
+  [[nodiscard]] Fit fit() const;
+
+ private:
+  study::PreparedMission mission_;
+  std::vector<record::NavState> path_;  ///< smoothed, at IMU epochs
+  study::GapFreeReference gap_free_;
+  study::Solution solution_;
+  Hypotheses hypotheses_;
+};
+
+}  // namespace coast::diagnose

@@ -1,0 +1,184 @@
+#include "coast/estimate/effect_pass.hpp"
+
+#include <Eigen/Cholesky>
+
+#include "backward_recursion.hpp"
+#include "coast/geo/earth.hpp"
+#include "propagation.hpp"
+
+namespace coast::estimate {
+
+namespace {
+
+/// Columns of the transition by which a unit of every coefficient reaches the navigation states within an interval, with the
+/// sign of the error of a state: estimate - truth.
+class DrivenColumns {
+ public:
+  DrivenColumns(const Mission& mission, const StateLayout& layout, const Effects& effects)
+      : mission_(mission),
+        effects_(effects),
+        navigator_(layout, mission.increments, mission.earth_rate),
+        W_(kNav, effects.size()),
+        gyro_b_(3, effects.size()),
+        accel_b_(gyro_b_),
+        gyro_e_(gyro_b_),
+        accel_e_(gyro_b_) {}
+
+  /// From a knot to the next.
+  void over(const Knot& knot, geo::GpsTime end) {
+    navigator_.set(knot.post);
+    W_.setZero();
+    begin_fold();
+    SampleCursor cursor{knot.next_sample, knot.remainder};
+    walk(mission_.imu, cursor, end, navigator_, [&](const SampleStep& step) { take(step, cursor.next_sample); });
+    close_fold();
+  }
+  [[nodiscard]] const NavRows& W() const { return W_; }
+
+ private:
+  void take(const SampleStep& step, std::size_t next_sample) {
+    const SampleDynamics dynamics = navigator_.propagate(step.raw);
+    navigator_.set_time(step.at);
+    gyro_b_.setZero();
+    accel_b_.setZero();
+    effects_.add_sensor_errors({step.whole ? next_sample - 1 : next_sample, dynamics.dtheta_b / dynamics.dt,
+                                dynamics.dv_b / dynamics.dt, navigator_.nav()},
+                               gyro_b_, accel_b_);
+    const Eigen::Matrix3d C = dynamics.dt * dynamics.C_b_e;
+    gyro_e_.noalias() += C.lazyProduct(gyro_b_);
+    accel_e_.noalias() += C.lazyProduct(accel_b_);
+    fold_.add(dynamics);
+    if (TransitionAccumulator::substep_due(fold_.h)) close_fold();
+  }
+  void close_fold() {
+    if (!(fold_.h > 0.0)) return;
+    fold_.advance(W_, navigator_.gravity_gradient(), mission_.earth_rate);
+    fold_.add_gyro_errors(W_, gyro_e_);
+    fold_.add_accel_errors(W_, accel_e_);
+    navigator_.advance_sensor_states();
+    begin_fold();
+  }
+  void begin_fold() {
+    fold_ = {};
+    gyro_e_.setZero();
+    accel_e_.setZero();
+  }
+
+  const Mission& mission_;
+  const Effects& effects_;
+  Navigator navigator_;
+  Fold fold_;
+  NavRows W_;
+  Eigen::Matrix3Xd gyro_b_, accel_b_;  ///< of the sample at hand
+  Eigen::Matrix3Xd gyro_e_, accel_e_;  ///< integrals over the fold
+};
+
+/// r and N of states and coefficients side by side. The coefficients are constants that the filter does not estimate: their
+/// rows of the gain are zero,
+///
+///     Phi = [Phi_x W; 0 I],   H = [H_x D],   K = [K_x; 0].
+class EffectRecursion {
+ public:
+  EffectRecursion(const StateLayout& layout, Eigen::Index effects, const EffectPassOptions& options)
+      : of_states_(layout),
+        layout_(layout),
+        blocks_(layout),
+        options_(options),
+        r_(Eigen::VectorXd::Zero(effects)),
+        N_cross_(Eigen::MatrixXd::Zero(layout.size(), effects)),
+        N_(Eigen::MatrixXd::Zero(effects, effects)),
+        null_x_(Eigen::MatrixXd::Zero(layout.size(), options.draws)),
+        null_(Eigen::MatrixXd::Zero(effects, options.draws)) {}
+
+  void through_transition(const Knot& knot, const NavRows& W) {
+    const Eigen::MatrixXd N_W = of_states_.N().leftCols<kNav>() * W;
+    N_.noalias() += W.transpose() * N_W.topRows<kNav>();
+    const Eigen::MatrixXd cross = W.transpose() * N_cross_.topRows<kNav>();
+    N_ += cross + cross.transpose();
+    N_cross_ += N_W;
+    times_phi_transposed(knot, N_cross_);
+    r_.noalias() += W.transpose() * of_states_.r().head<kNav>();
+    null_.noalias() += W.transpose() * null_x_.topRows<kNav>();
+    times_phi_transposed(knot, null_x_);
+    of_states_.through_transition(knot);
+  }
+
+  void through_update(const AppliedUpdate& u, const Eigen::MatrixXd& D) {
+    const Eigen::VectorXd innovation = u.S_inv * u.y - u.K.transpose() * of_states_.r();
+    r_.noalias() += D.transpose() * innovation;
+    draw(u, D);
+    const Eigen::MatrixXd NK = of_states_.N() * u.K;               // n x m
+    const Eigen::MatrixXd KtN_cross = u.K.transpose() * N_cross_;  // m x p
+    const Eigen::MatrixXd S_inv_KtNK = u.S_inv + u.K.transpose() * NK;
+    const Eigen::MatrixXd DtKtN = D.transpose() * KtN_cross;
+    N_.noalias() += D.transpose() * (S_inv_KtNK * D);
+    N_ -= DtKtN + DtKtN.transpose();
+    // H' S^-1 D + (I - K H)' (N_cross - N K D)
+    N_cross_.noalias() -= NK * D;
+    N_cross_.noalias() += u.H.transpose() * (S_inv_KtNK * D - KtN_cross);
+    of_states_.through_update(u);
+  }
+
+  [[nodiscard]] Evidence at(geo::GpsTime t) const {
+    return {t, of_states_.r(), of_states_.N(), r_, N_cross_, N_, null_x_, null_};
+  }
+
+ private:
+  void times_phi_transposed(const Knot& knot, Eigen::MatrixXd& M) {
+    if (M.cols() == 0) return;
+    const auto rest = layout_.size() - kNav;
+    const Eigen::MatrixXd nav = knot.Phi_n.transpose() * M.topRows<kNav>();
+    blocks_.over(knot.interval).apply_transposed(M.bottomRows(rest));
+    M.topRows<kNav>().setZero();
+    M.topRows(nav.rows()) += nav;
+  }
+  // As through_update, with innovations out of the filter's own covariance.
+  void draw(const AppliedUpdate& u, const Eigen::MatrixXd& D) {
+    if (null_.cols() == 0) return;
+    const Eigen::LLT<ComponentCov> llt(u.S_inv);
+    Eigen::MatrixXd S_inv_y(u.y.size(), null_.cols());
+    options_.fill_normal(S_inv_y);
+    S_inv_y = llt.matrixL() * S_inv_y;  // of y with covariance S
+    S_inv_y.noalias() -= u.K.transpose() * null_x_;
+    null_.noalias() += D.transpose() * S_inv_y;
+    null_x_.noalias() += u.H.transpose() * S_inv_y;
+  }
+
+  BackwardRecursion of_states_;
+  const StateLayout& layout_;
+  BlockTransitions blocks_;
+  const EffectPassOptions& options_;
+  Eigen::VectorXd r_;
+  Eigen::MatrixXd N_cross_, N_;
+  Eigen::MatrixXd null_x_, null_;
+};
+
+}  // namespace
+
+void effect_pass(const Mission& mission, const StateLayout& layout, const KnotStore& knots, const Effects& effects,
+                 const EffectPassOptions& options, const std::function<void(const Evidence&)>& visit) {
+  DrivenColumns driven(mission, layout, effects);
+  EffectRecursion recursion(layout, effects.size(), options);
+  Eigen::MatrixXd D;
+  Navigator navigator(layout, mission.increments, mission.earth_rate);
+  for (std::size_t k = knots.size(); k-- > 0;) {
+    const Knot knot = knots.at(k);
+    if (k + 1 < knots.size()) {
+      driven.over(knot, knots.time(k + 1));
+      recursion.through_transition(knot, driven.W());
+    }
+    navigator.set(knot.post);
+    const SampleCursor cursor{knot.next_sample, knot.remainder};
+    const Eigen::Matrix3d C_n_e = geo::C_n_e(geo::geodetic_from_ecef(knot.post.nav.r_eb_e));
+    const UpdateContext context = update_context(mission, layout, cursor, navigator, C_n_e);
+    for (auto update = knot.updates.rbegin(); update != knot.updates.rend(); ++update) {
+      D.setZero(update->y.size(), effects.size());
+      effects.add_measurement_errors({update->kind, knot.next_sample, knot.post.nav, context}, D);
+      recursion.through_update(*update, D);
+    }
+    visit(recursion.at(knot.post.nav.t));
+    if (options.progress && k % 256 == 0) options.progress(1.0 - static_cast<double>(k) / static_cast<double>(knots.size()));
+  }
+}
+
+}  // namespace coast::estimate
