@@ -3,6 +3,7 @@
 #include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "mission_run.hpp"
 #include "noise_check.hpp"
@@ -38,7 +39,8 @@ class Search {
     const double mean_gain = best != nullptr ? 0.5 * best->likelihood_ratio : 0.0;
     if (!noise_ && !noise_tried_ && contradiction(run_->solution().forward.innovations) > kContradicted) {
       noise_tried_ = true;
-      noise_ = fitted_noise(run_->prepared(), progress_);
+      noise_ = fitted_noise(run_->prepared(), last_fit_, progress_);
+      if (noise_) last_fit_ = noise_->fit;
       if (noise_ && noise_->gain() > mean_gain) {
         run();
         return true;
@@ -46,15 +48,11 @@ class Search {
       noise_.reset();
     }
     if (best == nullptr && settled) return false;
-    if (best != nullptr) take(*best);
-    const double before = run_->log_likelihood();
-    // Noise that was fitted may have stood for this effect.
-    if (best != nullptr) {
-      noise_.reset();
-      noise_tried_ = false;
+    if (best == nullptr) {
+      run();
+      return true;
     }
-    run();
-    if (best != nullptr) result_.findings.back().delta_log_likelihood = run_->log_likelihood() - before;
+    try_out(Suspicion(*best));
     return true;
   }
 
@@ -62,6 +60,7 @@ class Search {
     describe_what_was_not_found();
     if (noise_) result_.noise = noise_->findings;
     for (std::size_t i = 0; i < result_.findings.size(); ++i) result_.findings[i].value = taken_[i].value;
+    join_entries_with_exits();
     result_.after = run_->fit();
     result_.modelled = std::move(current_);
     return std::move(result_);
@@ -71,8 +70,20 @@ class Search {
   [[nodiscard]] std::size_t most() const { return static_cast<std::size_t>(options_.most_effects); }
 
   void run() {
-    current_ =
-        run_ == nullptr ? input_ : without(taken_, input_, run_->hypotheses(), run_->path(), run_->mission(), run_->layout());
+    if (run_ == nullptr) {
+      current_ = input_;
+      run_current();
+      return;
+    }
+    const std::unique_ptr<MissionRun> last = std::move(run_);
+    run_from(*last);
+  }
+  /// @param last  a run whose trajectory the effects are taken out along
+  void run_from(const MissionRun& last) {
+    current_ = without(taken_, input_, last.hypotheses(), last.path(), last.mission(), last.layout());
+    run_current();
+  }
+  void run_current() {
     if (noise_) {
       current_.setup.model = estimate::adjusted(current_.setup.model, noise_->fit.adjustment);
       current_.setup.filter = estimate::adjusted(current_.setup.filter, noise_->fit.adjustment);
@@ -129,10 +140,36 @@ class Search {
     return std::pair(track->score[k] / track->information[k], 1.0 / std::sqrt(track->information[k]));
   }
 
+  /// Takes an effect and runs without it. Where the mission is not linear over the effect's size the first estimate is too
+  /// large: it is halved until the likelihood rises. One that never does so is refused for good.
+  void try_out(const Suspicion& s) {
+    constexpr int kHalvings = 4;
+    const double before = run_->log_likelihood();
+    const std::optional<FittedNoise> noise = std::exchange(noise_, std::nullopt);  // it may have stood for this effect
+    const double stated = noise ? before - noise->gain() : before;
+    take(s);
+    std::unique_ptr<MissionRun> start = std::move(run_);
+    for (int i = 0; i <= kHalvings; ++i, taken_.back().value *= 0.5) {
+      run_from(*start);
+      const double gained = run_->log_likelihood() - stated;
+      if (gained < 0.5 * result_.threshold) continue;
+      result_.findings.back().delta_log_likelihood = gained;
+      noise_tried_ = false;
+      return;
+    }
+    taken_.pop_back();
+    result_.findings.pop_back();
+    refused_.push_back(s.hypothesis);
+    noise_ = noise;
+    run_from(*start);
+  }
+
   [[nodiscard]] const Suspicion* likeliest() const {
     const Suspicion* best = nullptr;
     for (const Suspicion& s : suspicions_.all)
-      if (s.p_value < options_.false_alarm_probability && (best == nullptr || s.log_bayes > best->log_bayes)) best = &s;
+      if (std::ranges::find(refused_, s.hypothesis) == refused_.end() && s.p_value < options_.false_alarm_probability &&
+          (best == nullptr || s.log_bayes > best->log_bayes))
+        best = &s;
     return best;
   }
 
@@ -142,6 +179,7 @@ class Search {
     Finding finding{.hypothesis = hypotheses[s.hypothesis],
                     .from = s.from,
                     .to = {},
+                    .from_sd_s = s.from_sd_s,
                     .value = s.estimate,
                     .sd = s.sd,
                     .p_value = s.p_value,
@@ -151,6 +189,26 @@ class Search {
         finding.alternatives.push_back({hypotheses[other.hypothesis], other.from, s.log_bayes - other.log_bayes});
     std::ranges::sort(finding.alternatives, {}, &Alternative::log_odds);
     result_.findings.push_back(std::move(finding));
+  }
+
+  /// An effect that is taken back later by an equal jump the other way lasted until then: a wrong fix.
+  void join_entries_with_exits() {
+    constexpr double kEqual = 4.0;  // sd of the sum
+    std::vector<Finding>& all = result_.findings;
+    for (std::size_t i = 0; i < all.size(); ++i)
+      for (std::size_t j = 0; j < all.size(); ++j) {
+        Finding& entry = all[i];
+        const Finding& exit = all[j];
+        if (entry.to || exit.to || entry.hypothesis.effect != exit.hypothesis.effect ||
+            entry.hypothesis.axis != exit.hypothesis.axis || !entry.from || !exit.from || !(*entry.from < *exit.from) ||
+            std::abs(entry.value + exit.value) > kEqual * std::hypot(entry.sd, exit.sd))
+          continue;
+        entry.to = exit.from;
+        entry.delta_log_likelihood += exit.delta_log_likelihood;
+        all.erase(all.begin() + static_cast<std::ptrdiff_t>(j));
+        i = 0;
+        j = 0;
+      }
   }
 
   void describe_what_was_not_found() {
@@ -180,8 +238,10 @@ class Search {
   MissionInput current_;
   std::unique_ptr<MissionRun> run_;
   std::vector<Taken> taken_;
+  std::vector<Eigen::Index> refused_;
   Suspicions suspicions_;
   std::optional<FittedNoise> noise_;
+  std::optional<estimate::NoiseFit> last_fit_;
   bool noise_tried_ = false;
   Diagnosis result_;
 };

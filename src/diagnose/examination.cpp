@@ -107,9 +107,19 @@ Suspicion best_of(const Examination::Track& track, const Hypothesis& h) {
   const auto ratio = [&](std::size_t k) { return track.score[k] * track.score[k] / track.information[k]; };
   for (std::size_t k = 1; k < track.t.size(); ++k)
     if (ratio(k) > ratio(best)) best = k;
+  // The instants whose likelihood ratio is less than the 95 % point of chi-square(1) below the largest.
+  constexpr double kDrop = 3.84;
+  std::size_t first = best;
+  std::size_t last = best;
+  while (first > 0 && ratio(first - 1) > ratio(best) - kDrop) --first;
+  while (last + 1 < track.t.size() && ratio(last + 1) > ratio(best) - kDrop) ++last;
+  // The interval reaches to the neighbours that are excluded: between two knots nothing tells.
+  const geo::GpsTime before = track.t[first > 0 ? first - 1 : 0];
+  const geo::GpsTime behind = track.t[std::min(last + 1, track.t.size() - 1)];
   const double places = std::max(1.0, (track.t.back() - track.t.front()) / kEpisode);
   return {.hypothesis = track.hypothesis,
           .from = track.t[best],
+          .from_sd_s = (behind - before) / (2.0 * 1.96),
           .estimate = track.score[best] / track.information[best],
           .sd = 1.0 / std::sqrt(track.information[best]),
           .likelihood_ratio = ratio(best),
@@ -156,6 +166,7 @@ Suspicions suspicions(const Examination& examination, const Hypotheses& hypothes
     largest = largest.cwiseMax(conditional.null_score(i).cwiseAbs2() / information);
     result.all.push_back({.hypothesis = i,
                           .from = {},
+                          .from_sd_s = 0.0,
                           .estimate = score / information,
                           .sd = 1.0 / std::sqrt(information),
                           .likelihood_ratio = score * score / information,

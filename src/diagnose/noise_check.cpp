@@ -11,7 +11,7 @@ namespace coast::diagnose {
 
 namespace {
 
-constexpr double kLongestFit = 1200.0;  // s
+constexpr double kLongestFit = 300.0;  // s: the filter runs a hundred times over it
 
 /// Sums over one component of one kind of innovation.
 struct ComponentSums {
@@ -93,9 +93,12 @@ double contradiction(const std::vector<estimate::InnovationRecord>& innovations)
   return largest;
 }
 
-std::optional<FittedNoise> fitted_noise(const study::PreparedMission& mission, const study::Progress& progress) {
+std::optional<FittedNoise> fitted_noise(const study::PreparedMission& mission, const std::optional<estimate::NoiseFit>& before,
+                                        const study::Progress& progress) {
   constexpr estimate::NoiseFitChoice kAll{.gnss_scale = true, .correlated_gnss = true, .imu_white_noise = true};
-  FittedNoise fitted{mission.fit(kAll, estimate::starting_point(mission.options(), kAll), kLongestFit, progress), {}};
+  FittedNoise fitted{
+      mission.fit(kAll, before ? before->adjustment : estimate::starting_point(mission.options(), kAll), kLongestFit, progress),
+      {}};
   const double p_value = noise::chi2_survival(static_cast<double>(fitted.fit.names.size()), 2.0 * std::max(0.0, fitted.gain()));
   if (p_value > 0.01) return std::nullopt;
   fitted.findings = findings_of(fitted.fit, p_value);

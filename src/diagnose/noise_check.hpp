@@ -18,6 +18,9 @@ struct FittedNoise {
   std::vector<NoiseFinding> findings;
   [[nodiscard]] double gain() const { return fit.log_likelihood_after - fit.log_likelihood_before; }
 };
-[[nodiscard]] std::optional<FittedNoise> fitted_noise(const study::PreparedMission& mission, const study::Progress& progress);
+/// @param before  an earlier fit: where the search begins
+[[nodiscard]] std::optional<FittedNoise> fitted_noise(const study::PreparedMission& mission,
+                                                      const std::optional<estimate::NoiseFit>& before,
+                                                      const study::Progress& progress);
 
 }  // namespace coast::diagnose

@@ -42,6 +42,7 @@ struct ExaminationOptions {
 struct Suspicion {
   Eigen::Index hypothesis = 0;
   std::optional<geo::GpsTime> from;  ///< where it begins at some time
+  double from_sd_s = 0.0;
   double estimate = 0.0;
   double sd = 0.0;
   double likelihood_ratio = 0.0;  ///< twice the logarithm

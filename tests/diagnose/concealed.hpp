@@ -1,0 +1,39 @@
+#pragma once
+// Simulated missions in which something is not as the configuration says.
+
+#include "coast/diagnose/diagnosis.hpp"
+#include "coast/io/yaml.hpp"
+#include "coast/simulate/scenario.hpp"
+
+namespace coast::test {
+
+/// A short drive with an industrial IMU that errs by its own model, GNSS at the antenna twice a second.
+inline diagnose::MissionInput honest_mission(std::uint64_t seed, double duration_s = 300.0) {
+  simulate::Scenario scenario = simulate::Scenario::from(io::parse_yaml(fmt::format(R"(
+schema: coast.scenario/1
+trajectory: {{kind: city, duration_s: {}, static_s: 20, origin_deg_m: [46.52, 6.57, 400], course_deg: 30}}
+imu: {{rate_hz: 50, lever_arm_m: [0.3, -0.2, -1.1]}}
+gnss: {{rate_hz: 2, phase_s: 0.013, sd_m: [0.01, 0.01, 0.02], velocity_sd_mps: [0.03, 0.03, 0.05]}}
+start_gps: {{week: 2374, sow: 208800}}
+)",
+                                                                                    duration_s),
+                                                                        "scenario.yaml"),
+                                                         [](const std::filesystem::path& file) { return io::load_yaml(file); });
+  scenario.error_model = noise::ImuErrorModel::from(io::parse_yaml(R"(
+schema: coast.imu_error_model/1
+sensor: test
+gyro:
+  all: [{process: white_noise, density: 0.15, unit: deg/sqrt(h)}, {process: random_constant, sigma: 20, unit: deg/h}]
+accel:
+  all: [{process: white_noise, density: 60, unit: ug/sqrt(Hz)}, {process: random_constant, sigma: 2, unit: mg}]
+)",
+                                                                   "model.yaml"));
+  scenario.seed = seed;
+  simulate::SimulatedMission recorded = simulate::simulate(scenario);
+  diagnose::MissionInput input{std::move(recorded.imu), std::move(recorded.gnss), {}};
+  input.setup.model = *scenario.error_model;
+  input.setup.lever_arm_b = scenario.gnss.lever_arm_b;
+  return input;
+}
+
+}  // namespace coast::test
