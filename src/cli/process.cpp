@@ -347,6 +347,7 @@ std::string ProcessRun::write_results() {
   const std::string resolved = config_.root.resolved_yaml();
   io::write_text(out_ / "run.resolved.yaml", resolved);
   io::write_text(out_ / "summary.json", summary_json(result_));
+  io::write_text(out_ / "innovations.csv", innovations_csv(result_.innovations));
   const report::Page page = make_page({config_, result_, mission_, curves_, resolved});
   io::write_text(out_ / "report.json", report::to_json(page));
   io::write_text(out_ / "report.html", report::render(page));

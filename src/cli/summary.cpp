@@ -166,6 +166,15 @@ std::string summary_json(const ProcessResult& result) {
   return j.dump(1) + "\n";
 }
 
+std::string innovations_csv(const std::vector<estimate::InnovationRecord>& innovations) {
+  std::string text = "gps_week,sow_s,kind,used,quality,nu_1,nu_2,nu_3,sd_1,sd_2,sd_3,nis,dof\n";
+  for (const estimate::InnovationRecord& r : innovations)
+    text += fmt::format("{},{:.6f},{},{},{},{:.9g},{:.9g},{:.9g},{:.9g},{:.9g},{:.9g},{:.6g},{}\n", r.t.week(), r.t.sow(),
+                        estimate::name(r.kind), r.used ? 1 : 0, static_cast<int>(r.quality), r.nu.x(), r.nu.y(), r.nu.z(),
+                        r.sd.x(), r.sd.y(), r.sd.z(), r.nis, r.dof);
+  return text;
+}
+
 std::string summary_text(const ProcessResult& result) {
   std::string text = fmt::format("{:.1f} s processed, {} of {} GNSS epochs used, {} refused; NIS {:.2f}, expected {:.2f}\n",
                                  result.end - result.start, result.gnss_used, result.gnss_epochs, result.gnss_rejected,

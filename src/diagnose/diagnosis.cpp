@@ -14,7 +14,8 @@ namespace {
 
 constexpr double kContradicted = 4.0;  // sd of the innovations' variance or correlation, from where noise is fitted
 constexpr double kSettled = 0.1;       // sd that a coefficient may still move
-constexpr double kLogOdds = 7.0;       // alternatives less likely than that, 1 in 1000, are not told
+// Alternatives are told where the data alone, or with what is plausible, hold them for more than a thousandth as likely.
+constexpr double kLogOdds = 7.0;
 
 /// The mission with what has been taken so far, and the search's next step.
 class Search {
@@ -185,7 +186,8 @@ class Search {
                     .p_value = s.p_value,
                     .alternatives = {}};
     for (const Suspicion& other : suspicions_.all)
-      if (other.hypothesis != s.hypothesis && s.log_bayes - other.log_bayes < kLogOdds)
+      if (other.hypothesis != s.hypothesis &&
+          (s.log_bayes - other.log_bayes < kLogOdds || s.likelihood_ratio - other.likelihood_ratio < 2.0 * kLogOdds))
         finding.alternatives.push_back({hypotheses[other.hypothesis], other.from, s.log_bayes - other.log_bayes});
     std::ranges::sort(finding.alternatives, {}, &Alternative::log_odds);
     result_.findings.push_back(std::move(finding));
