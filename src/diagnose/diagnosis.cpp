@@ -17,6 +17,19 @@ constexpr double kSettled = 0.1;       // sd that a coefficient may still move
 // Alternatives are told where the data alone, or with what is plausible, hold them for more than a thousandth as likely.
 constexpr double kLogOdds = 7.0;
 
+/// A start that the data decide: it was found by a run that knew nothing of the effect, which may be in it.
+ins::InitialState loosened(const study::PreparedMission& mission, const record::NavState& smoothed) {
+  constexpr double kPosition = 1.0;  // m
+  constexpr double kVelocity = 0.3;  // m/s
+  constexpr double kAttitude = 3.0;  // times the alignment's
+  ins::InitialState start = mission.start();
+  start.nav = smoothed;
+  start.sd_position_n = start.sd_position_n.cwiseMax(kPosition);
+  start.sd_velocity_n = start.sd_velocity_n.cwiseMax(kVelocity);
+  if (!mission.setup().start) start.sd_attitude_n *= kAttitude;
+  return start;
+}
+
 /// The mission with what has been taken so far, and the search's next step.
 class Search {
  public:
@@ -25,6 +38,7 @@ class Search {
     input_.setup.filter.gate_probability = 0.0;  // what a gate refuses cannot be explained
     input_.setup.noise_fit.reset();
     run();
+    run();  // from a start that is loose
     result_.grade = grade_;
     result_.before = run_->fit();
   }
@@ -82,6 +96,7 @@ class Search {
   /// @param last  a run whose trajectory the effects are taken out along
   void run_from(const MissionRun& last) {
     current_ = without(taken_, input_, last.hypotheses(), last.path(), last.mission(), last.layout());
+    current_.setup.start = loosened(last.prepared(), last.solution().smoothed.front().nav);
     run_current();
   }
   void run_current() {

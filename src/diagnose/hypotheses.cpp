@@ -115,9 +115,12 @@ void Hypotheses::add_sensor_errors(const estimate::SampleView& sample, Eigen::Ma
                                    Eigen::Matrix3Xd& accel_b) const {
   const Signals signals =
       signals_.at(std::min(sample.index, mission_.imu.samples.size() - 1), sample.omega_b, sample.f_b, sample.nav);
-  for (const Part& part : parts_)
-    if (part.effect->sensors)
-      part.effect->sensors(signals, gyro_b.middleCols(part.first, part.count), accel_b.middleCols(part.first, part.count));
+  for (const Part& part : parts_) {
+    if (part.effect->sensors) {
+      SensorErrors errors{gyro_b.middleCols(part.first, part.count), accel_b.middleCols(part.first, part.count)};
+      part.effect->sensors(signals, errors);
+    }
+  }
   gyro_b = mission_.C_s_b * gyro_b;
   accel_b = mission_.C_s_b * accel_b;
 }

@@ -55,7 +55,8 @@ TEST(Catalogue, EveryAxisActs) {
     Eigen::Matrix3Xd sum = Eigen::Matrix3Xd::Zero(3, columns);
     Eigen::Matrix3Xd part = sum, other = sum;
     if (e.sensors) {
-      e.sensors(signals, part, other);
+      SensorErrors errors{part, other};
+      e.sensors(signals, errors);
       sum += part.cwiseAbs() + other.cwiseAbs();
     }
     for (const auto& at_the_antenna : {e.position, e.velocity}) {
@@ -76,7 +77,8 @@ TEST(Catalogue, PairsAreResponseThenCause) {
   const Signals s = some_signals();
   const Effect& e = effect("gyro_g_sensitivity");
   Eigen::Matrix3Xd gyro = Eigen::Matrix3Xd::Zero(3, 9), accel = gyro;
-  e.sensors(s, gyro, accel);
+  SensorErrors errors{gyro, accel};
+  e.sensors(s, errors);
   const auto zy = std::ranges::find(e.axes, "zy") - e.axes.begin();
   EXPECT_EQ(gyro.col(zy), Eigen::Vector3d(0.0, 0.0, s.f.y()));
   EXPECT_TRUE(accel.isZero(0.0));
@@ -87,7 +89,8 @@ TEST(Catalogue, SizeEffectCommonToAllAxesIsALeverArm) {
   const Signals s = some_signals();
   const Effect& e = effect("accel_size_effect");
   Eigen::Matrix3Xd gyro = Eigen::Matrix3Xd::Zero(3, 9), accel = gyro;
-  e.sensors(s, gyro, accel);
+  SensorErrors errors{gyro, accel};
+  e.sensors(s, errors);
   const Eigen::Vector3d r(0.1, -0.2, 0.3);
   Eigen::VectorXd common(9);
   common << r, r, r;
@@ -98,7 +101,8 @@ TEST(Catalogue, SizeEffectCommonToAllAxesIsALeverArm) {
 TEST(Catalogue, MountRotationTurnsBothTriads) {
   const Signals s = some_signals();
   Eigen::Matrix3Xd gyro = Eigen::Matrix3Xd::Zero(3, 3), accel = gyro;
-  effect("imu_mount_rotation").sensors(s, gyro, accel);
+  SensorErrors errors{gyro, accel};
+  effect("imu_mount_rotation").sensors(s, errors);
   const Eigen::Vector3d theta(1e-6, -2e-6, 3e-6);
   const Eigen::Matrix3d turned = geo::rotation_matrix(theta).transpose();  // old axes to new ones
   EXPECT_TRUE((s.omega + gyro * theta).isApprox(turned * s.omega, 1e-10));

@@ -49,6 +49,11 @@ enum class Site { kGyro, kAccel, kImu, kGnss, kAntenna, kClock, kGravity, kMount
 [[nodiscard]] std::string_view name(Site site);
 
 using Columns = Eigen::Ref<Eigen::Matrix3Xd>;
+/// Of gyros and accelerometers per unit of each axis, 3 x axes, sensor axes, rad/s and m/s^2.
+struct SensorErrors {
+  Columns gyro;
+  Columns accel;
+};
 
 /// One effect: an equation, linear in some coefficients (`axes`) that are judged one by one. measured = true + error.
 struct Effect {
@@ -68,8 +73,7 @@ struct Effect {
   std::array<double, 4> plausible{};
   bool needs_temperature = false;
   bool needs_reference = false;  ///< nothing in the recording can show it
-  /// Errors per unit of each axis, 3 x axes, sensor axes, rad/s and m/s^2.
-  std::function<void(const Signals&, Columns gyro, Columns accel)> sensors = {};
+  std::function<void(const Signals&, SensorErrors&)> sensors = {};
   /// Errors of a GNSS position per unit of each axis, 3 x axes, e, m; and of a velocity, m/s.
   std::function<void(const FixSignals&, Columns)> position = {};
   std::function<void(const FixSignals&, Columns)> velocity = {};

@@ -15,8 +15,8 @@ Effect accel_misalignment() {
       .axes = six_pairs(),
       .plausible = {1e-4, 4e-4, 3e-3, 1e-2},
       .sensors =
-          [](const Signals& s, Columns, Columns accel) {
-            for_each_pair(true, [&](auto column, auto response, auto cause) { accel(response, column) = s.f(cause); });
+          [](const Signals& s, SensorErrors& error) {
+            for_each_pair(true, [&](auto column, auto response, auto cause) { error.accel(response, column) = s.f(cause); });
           },
   };
 }

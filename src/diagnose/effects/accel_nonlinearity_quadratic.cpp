@@ -15,7 +15,7 @@ Effect accel_nonlinearity_quadratic() {
       .axes = three_axes(),
       .plausible = {1e-5 / geo::kStandardGravity, 5e-5 / geo::kStandardGravity, 3e-4 / geo::kStandardGravity,
                     3e-3 / geo::kStandardGravity},
-      .sensors = [](const Signals& s, Columns, Columns accel) { accel.diagonal() = s.f.cwiseAbs2(); },
+      .sensors = [](const Signals& s, SensorErrors& error) { error.accel.diagonal() = s.f.cwiseAbs2(); },
   };
 }
 

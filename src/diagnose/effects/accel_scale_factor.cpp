@@ -14,7 +14,7 @@ Effect accel_scale_factor() {
       .source = "Groves (2013), section 4.4.2",
       .axes = three_axes(),
       .plausible = {5e-5, 3e-4, 3e-3, 1e-2},
-      .sensors = [](const Signals& s, Columns, Columns accel) { accel.diagonal() = s.f; },
+      .sensors = [](const Signals& s, SensorErrors& error) { error.accel.diagonal() = s.f; },
   };
 }
 

@@ -15,7 +15,7 @@ Effect accel_sign_asymmetric_scale() {
       .source = "IEEE Std 1293-2018, asymmetry",
       .axes = three_axes(),
       .plausible = {2e-5, 1e-4, 5e-4, 5e-3},
-      .sensors = [](const Signals& s, Columns, Columns accel) { accel.diagonal() = s.f.cwiseAbs(); },
+      .sensors = [](const Signals& s, SensorErrors& error) { error.accel.diagonal() = s.f.cwiseAbs(); },
   };
 }
 

@@ -15,11 +15,11 @@ Effect accel_size_effect() {
       .axes = nine_pairs(),
       .plausible = {0.02, 0.02, 0.005, 0.002},
       .sensors =
-          [](const Signals& s, Columns, Columns accel) {
-            const Eigen::Matrix3d Omega = geo::skew(s.omega);
-            const Eigen::Matrix3d moved = geo::skew(s.omega_dot) + Omega * Omega;
-            for_each_pair(false,
-                          [&](auto column, auto response, auto cause) { accel(response, column) = moved(response, cause); });
+          [](const Signals& s, SensorErrors& error) {
+            const Eigen::Matrix3d turning = geo::skew(s.omega);
+            const Eigen::Matrix3d moved = geo::skew(s.omega_dot) + turning * turning;
+            for_each_pair(
+                false, [&](auto column, auto response, auto cause) { error.accel(response, column) = moved(response, cause); });
           },
   };
 }

@@ -15,7 +15,7 @@ Effect accel_temperature_bias() {
       .axes = three_axes(),
       .plausible = {1e-3 * kMilliG, 1e-2 * kMilliG, 0.2 * kMilliG, 1.0 * kMilliG},
       .needs_temperature = true,
-      .sensors = [](const Signals& s, Columns, Columns accel) { accel.diagonal().setConstant(s.temperature); },
+      .sensors = [](const Signals& s, SensorErrors& error) { error.accel.diagonal().setConstant(s.temperature); },
   };
 }
 

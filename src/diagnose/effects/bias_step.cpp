@@ -15,7 +15,7 @@ Effect bias_step_gyro() {
       .source = "de Jong & Penzer (1998)",
       .axes = three_axes(),
       .plausible = {0.1 * kDegreePerHour, 2.0 * kDegreePerHour, 50.0 * kDegreePerHour, 500.0 * kDegreePerHour},
-      .sensors = [](const Signals&, Columns gyro, Columns) { gyro.diagonal().setOnes(); },
+      .sensors = [](const Signals&, SensorErrors& error) { error.gyro.diagonal().setOnes(); },
   };
 }
 
@@ -32,7 +32,7 @@ Effect bias_step_accel() {
       .source = "de Jong & Penzer (1998)",
       .axes = three_axes(),
       .plausible = {0.05 * kMilliG, 0.5 * kMilliG, 3.0 * kMilliG, 10.0 * kMilliG},
-      .sensors = [](const Signals&, Columns, Columns accel) { accel.diagonal().setOnes(); },
+      .sensors = [](const Signals&, SensorErrors& error) { error.accel.diagonal().setOnes(); },
   };
 }
 

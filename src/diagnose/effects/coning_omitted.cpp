@@ -14,7 +14,7 @@ Effect coning_omitted() {
       .source = "Savage (1998), eq. (33)",
       .axes = {""},
       .plausible = {1.0, 1.0, 1.0, 1.0},
-      .sensors = [](const Signals& s, Columns gyro, Columns) { gyro.col(0) = -s.coning; },
+      .sensors = [](const Signals& s, SensorErrors& error) { error.gyro.col(0) = -s.coning; },
   };
 }
 

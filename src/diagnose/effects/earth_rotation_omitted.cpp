@@ -15,7 +15,7 @@ Effect earth_rotation_omitted() {
       .source = "Groves (2013), eq. (5.18)",
       .axes = {""},
       .plausible = {1.0, 1.0, 1.0, 1.0},
-      .sensors = [](const Signals& s, Columns gyro, Columns) { gyro.col(0) = -geo::kEarthRate * s.C_e_s.col(2); },
+      .sensors = [](const Signals& s, SensorErrors& error) { error.gyro.col(0) = -geo::kEarthRate * s.C_e_s.col(2); },
   };
 }
 

@@ -15,7 +15,7 @@ Effect gravity_disturbance() {
       .source = "Groves (2013), section 2.4.7",
       .axes = {"n", "e", "d"},
       .plausible = {50.0 * geo::kMilliGal, 50.0 * geo::kMilliGal, 50.0 * geo::kMilliGal, 50.0 * geo::kMilliGal},
-      .sensors = [](const Signals& s, Columns, Columns accel) { accel = -s.C_e_s * s.C_n_e; },
+      .sensors = [](const Signals& s, SensorErrors& error) { error.accel = -s.C_e_s * s.C_n_e; },
   };
 }
 

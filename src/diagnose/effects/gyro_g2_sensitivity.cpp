@@ -16,9 +16,9 @@ Effect gyro_g2_sensitivity() {
       .plausible = {1e-3 * kDegreePerHour / 96.2, 0.1 * kDegreePerHour / 96.2, 10.0 * kDegreePerHour / 96.2,
                     20.0 * kDegreePerHour / 96.2},
       .sensors =
-          [](const Signals& s, Columns gyro, Columns) {
-            for_each_pair(false,
-                          [&](auto column, auto response, auto cause) { gyro(response, column) = s.f(cause) * s.f(cause); });
+          [](const Signals& s, SensorErrors& error) {
+            for_each_pair(
+                false, [&](auto column, auto response, auto cause) { error.gyro(response, column) = s.f(cause) * s.f(cause); });
           },
   };
 }

@@ -16,8 +16,8 @@ Effect gyro_g_sensitivity() {
       .plausible = {1e-2 * kDegreePerHour / geo::kStandardGravity, kDegreePerHour / geo::kStandardGravity,
                     40.0 * kDegreePerHour / geo::kStandardGravity, 300.0 * kDegreePerHour / geo::kStandardGravity},
       .sensors =
-          [](const Signals& s, Columns gyro, Columns) {
-            for_each_pair(false, [&](auto column, auto response, auto cause) { gyro(response, column) = s.f(cause); });
+          [](const Signals& s, SensorErrors& error) {
+            for_each_pair(false, [&](auto column, auto response, auto cause) { error.gyro(response, column) = s.f(cause); });
           },
   };
 }

@@ -15,8 +15,8 @@ Effect gyro_misalignment() {
       .axes = six_pairs(),
       .plausible = {1e-4, 4e-4, 3e-3, 1e-2},
       .sensors =
-          [](const Signals& s, Columns gyro, Columns) {
-            for_each_pair(true, [&](auto column, auto response, auto cause) { gyro(response, column) = s.omega(cause); });
+          [](const Signals& s, SensorErrors& error) {
+            for_each_pair(true, [&](auto column, auto response, auto cause) { error.gyro(response, column) = s.omega(cause); });
           },
   };
 }

@@ -14,7 +14,7 @@ Effect gyro_scale_factor() {
       .source = "Groves (2013), section 4.4.2",
       .axes = three_axes(),
       .plausible = {1e-5, 2e-4, 2e-3, 1e-2},
-      .sensors = [](const Signals& s, Columns gyro, Columns) { gyro.diagonal() = s.omega; },
+      .sensors = [](const Signals& s, SensorErrors& error) { error.gyro.diagonal() = s.omega; },
   };
 }
 

@@ -15,7 +15,7 @@ Effect gyro_temperature_bias() {
       .axes = three_axes(),
       .plausible = {1e-3 * kDegreePerHour, 0.05 * kDegreePerHour, 5.0 * kDegreePerHour, 50.0 * kDegreePerHour},
       .needs_temperature = true,
-      .sensors = [](const Signals& s, Columns gyro, Columns) { gyro.diagonal().setConstant(s.temperature); },
+      .sensors = [](const Signals& s, SensorErrors& error) { error.gyro.diagonal().setConstant(s.temperature); },
   };
 }
 

@@ -16,8 +16,10 @@ Effect imu_clock_drift() {
       .plausible = {1e-4, 1e-4, 1e-4, 1e-4},
       // In the time of the tags tau = (1 + e) t the body moves as y(tau) = x(t): y' = v (1 - e), y'' = a (1 - 2 e). What is
       // measured is (a - g) (1 - e), what such a motion asks for y'' - g. Rates shrink like y' and fit, but for the Earth's.
-      .sensors = [](const Signals& s, Columns,
-                    Columns accel) { accel.col(0) = s.f + 2.0 * geo::kStandardGravity * (s.C_e_s * s.C_n_e.col(2)); },
+      .sensors =
+          [](const Signals& s, SensorErrors& error) {
+            error.accel.col(0) = s.f + 2.0 * geo::kStandardGravity * (s.C_e_s * s.C_n_e.col(2));
+          },
       .position = [](const FixSignals& s, Columns D) { D.col(0) = s.elapsed * s.v_ea_e; },
       .velocity = [](const FixSignals& s, Columns D) { D.col(0) = s.elapsed * s.a_ea_e + s.v_ea_e; },
   };

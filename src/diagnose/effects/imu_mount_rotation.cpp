@@ -16,9 +16,9 @@ Effect imu_mount_rotation() {
       .axes = three_axes(),
       .plausible = {0.01, 0.01, 0.01, 0.01},
       .sensors =
-          [](const Signals& s, Columns gyro, Columns accel) {
-            gyro = geo::skew(s.omega);
-            accel = geo::skew(s.f);
+          [](const Signals& s, SensorErrors& error) {
+            error.gyro = geo::skew(s.omega);
+            error.accel = geo::skew(s.f);
           },
   };
 }

@@ -15,7 +15,7 @@ Effect rate_ramp_gyro() {
       .axes = three_axes(),
       .plausible = {1e-2 * kDegreePerHour / geo::kHour, 1.0 * kDegreePerHour / geo::kHour, 30.0 * kDegreePerHour / geo::kHour,
                     300.0 * kDegreePerHour / geo::kHour},
-      .sensors = [](const Signals& s, Columns gyro, Columns) { gyro.diagonal().setConstant(s.elapsed); },
+      .sensors = [](const Signals& s, SensorErrors& error) { error.gyro.diagonal().setConstant(s.elapsed); },
   };
 }
 
@@ -32,7 +32,7 @@ Effect rate_ramp_accel() {
       .axes = three_axes(),
       .plausible = {1e-2 * kMilliG / geo::kHour, 0.1 * kMilliG / geo::kHour, 2.0 * kMilliG / geo::kHour,
                     10.0 * kMilliG / geo::kHour},
-      .sensors = [](const Signals& s, Columns, Columns accel) { accel.diagonal().setConstant(s.elapsed); },
+      .sensors = [](const Signals& s, SensorErrors& error) { error.accel.diagonal().setConstant(s.elapsed); },
   };
 }
 

@@ -16,7 +16,7 @@ Effect temperature_rate_hysteresis_gyro() {
       .plausible = {0.1 * kDegreePerHour * 60.0, 1.0 * kDegreePerHour * 60.0, 20.0 * kDegreePerHour * 60.0,
                     200.0 * kDegreePerHour * 60.0},
       .needs_temperature = true,
-      .sensors = [](const Signals& s, Columns gyro, Columns) { gyro.diagonal().setConstant(s.temperature_rate); },
+      .sensors = [](const Signals& s, SensorErrors& error) { error.gyro.diagonal().setConstant(s.temperature_rate); },
   };
 }
 
@@ -33,7 +33,7 @@ Effect temperature_rate_hysteresis_accel() {
       .axes = three_axes(),
       .plausible = {1e-2 * kMilliG * 60.0, 0.1 * kMilliG * 60.0, 1.0 * kMilliG * 60.0, 5.0 * kMilliG * 60.0},
       .needs_temperature = true,
-      .sensors = [](const Signals& s, Columns, Columns accel) { accel.diagonal().setConstant(s.temperature_rate); },
+      .sensors = [](const Signals& s, SensorErrors& error) { error.accel.diagonal().setConstant(s.temperature_rate); },
   };
 }
 

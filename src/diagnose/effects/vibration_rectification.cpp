@@ -15,7 +15,7 @@ Effect vibration_rectification() {
       .axes = three_axes(),
       .plausible = {1e-5 / geo::kStandardGravity, 5e-5 / geo::kStandardGravity, 1e-3 / geo::kStandardGravity,
                     5e-3 / geo::kStandardGravity},
-      .sensors = [](const Signals& s, Columns, Columns accel) { accel.diagonal() = s.vibration; },
+      .sensors = [](const Signals& s, SensorErrors& error) { error.accel.diagonal() = s.vibration; },
   };
 }
 
