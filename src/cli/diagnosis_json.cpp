@@ -92,6 +92,7 @@ std::string diagnosis_json(const diagnose::Diagnosis& d, const diagnose::Mission
   j["verification"] = {{"log_likelihood_per_epoch", {d.before.log_likelihood_per_epoch, d.after.log_likelihood_per_epoch}},
                        {"nis", {d.before.nis, d.after.nis}},
                        {"outage_rms_m", {d.before.outage_rms_m, d.after.outage_rms_m}}};
+  j["modelled_run"] = "run.diagnosed.yaml";
   j["grade"] = diagnose::name(d.grade);
   j["threshold"] = d.threshold;
   j["runs"] = d.runs;
@@ -106,6 +107,24 @@ std::string diagnosis_text(const diagnose::Diagnosis& d) {
                         f.from ? fmt::format(" from {:.1f} s", f.from->sow()) : std::string(), explanation(f));
   for (const diagnose::NoiseFinding& f : d.noise)
     text += fmt::format("{} {} {}: {} = {:.3g} +- {:.2g} {}\n", f.name, f.sensor, f.axis, f.parameter, f.value, f.sd, f.unit);
+  return text;
+}
+
+std::string diagnosed_yaml(const std::string& resolved, const diagnose::Diagnosis& d) {
+  std::string text = resolved;
+  if (!text.empty() && text.back() != '\n') text += '\n';
+  for (const diagnose::NoiseFinding& f : d.noise)
+    text += fmt::format("# noise found beside what is stated: {} {} {}: {} = {:.4g} {}\n", f.name, f.sensor, f.axis,
+                        f.parameter, f.value, f.unit);
+  if (d.findings.empty()) return text;
+  text += "effects:\n";
+  for (const diagnose::Finding& f : d.findings) {
+    text += fmt::format("  - {{name: {}, sensor: {}, ", f.hypothesis.effect->name, diagnose::name(f.hypothesis.effect->site));
+    if (!f.hypothesis.axis_name().empty()) text += fmt::format("axis: {}, ", f.hypothesis.axis_name());
+    if (f.from) text += fmt::format("start_s: {:.6f}, ", f.from->sow());
+    if (f.to) text += fmt::format("end_s: {:.6f}, ", f.to->sow());
+    text += fmt::format("value: {:.17g}}}  # +- {:.2g} {}\n", f.value, f.sd, f.hypothesis.effect->unit);
+  }
   return text;
 }
 

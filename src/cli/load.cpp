@@ -117,6 +117,15 @@ study::Setup setup_of(const RunConfig& config, const Recordings& recordings, con
   return setup;
 }
 
+void take_out_effects(const RunConfig& config, Recordings& recordings, study::Setup& setup, const study::Progress& progress) {
+  if (config.effects.empty()) return;
+  diagnose::MissionInput without =
+      diagnose::without(config.effects, {std::move(recordings.imu), std::move(recordings.gnss), std::move(setup)}, progress);
+  recordings.imu = std::move(without.imu);
+  recordings.gnss = std::move(without.gnss);
+  setup = std::move(without.setup);
+}
+
 std::filesystem::path output_folder(const std::filesystem::path& input, const std::filesystem::path& out) {
   std::filesystem::path folder = out;
   if (folder.empty()) {

@@ -31,6 +31,8 @@ void print_inspection(const Recordings& recordings, bool quiet);
 /// The setup of run.yaml with what depends on the recordings: a given start in their week, and where the first outage begins.
 [[nodiscard]] study::Setup setup_of(const RunConfig& config, const Recordings& recordings,
                                     const std::optional<study::OutageSweep>& sweep);
+/// Takes the effects that run.yaml names out of the recordings and the setup; nothing where it names none.
+void take_out_effects(const RunConfig& config, Recordings& recordings, study::Setup& setup, const study::Progress& progress);
 /// `--out`, or the yaml's name + ".out"; made where it is missing.  @throws OutputError
 [[nodiscard]] std::filesystem::path output_folder(const std::filesystem::path& input, const std::filesystem::path& out);
 

@@ -66,8 +66,11 @@ std::uint64_t digest_of(const EnsembleStudy& config) {
   return digest.value();
 }
 
-study::Setup setup_with(const SweepStudy& config, const SweepStudy::Model& model, const Recordings& recordings) {
+/// @param recordings  without the effects that the run names, afterwards
+study::Setup setup_with(const SweepStudy& config, const SweepStudy::Model& model, Recordings& recordings) {
   study::Setup setup = setup_of(config.run, recordings, config.sweep);
+  take_out_effects(config.run, recordings, setup, {});
+  setup.fit_before = setup.refine_before;  // in situ, on a part that the gaps do not use
   setup.model = model.named.model;
   if (!model.noise_estimated) return setup;
   if (!setup.noise_fit) setup.noise_fit = estimate::NoiseFitChoice{};

@@ -54,13 +54,14 @@ class Scores {
 /// The run, stage by stage; each stage leaves its part in `result`.
 class ProcessRun {
  public:
-  ProcessRun(const RunConfig& config, Recordings recordings, std::filesystem::path out, const study::Progress& progress)
+  ProcessRun(const RunConfig& config, Recordings recordings, study::Setup setup, std::filesystem::path out,
+             const study::Progress& progress)
       : config_(config),
         out_(std::move(out)),
         progress_(progress),
         result_(what_was_read(recordings)),
         reference_(std::move(recordings.reference)),
-        setup_(setup_of(config, recordings, config.sweep)),
+        setup_(std::move(setup)),
         mission_(std::move(recordings.imu), std::move(recordings.gnss), setup_, progress),
         curves_(mission_.start().nav),
         forward_knots_(mission_.mission().imu.samples.back().t - mission_.start().nav.t) {
@@ -366,7 +367,9 @@ void process(const std::filesystem::path& run_yaml, const CommonOptions& options
   line.clear();
   print_inspection(recordings, options.quiet);
 
-  ProcessRun run(config, std::move(recordings), out, progress);
+  study::Setup setup = setup_of(config, recordings, config.sweep);
+  take_out_effects(config, recordings, setup, progress);
+  ProcessRun run(config, std::move(recordings), std::move(setup), out, progress);
   run.solve_without_outages();
   run.run_earlier_passes();
   tbb::parallel_invoke([&run] { run.solve_and_write(); }, [&run] { run.check_lever_arm(); });

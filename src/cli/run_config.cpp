@@ -115,6 +115,30 @@ int satellites_left(const Node& outage, const RunConfig& run) {
   return static_cast<int>(left);
 }
 
+/// effects: [{name: gyro_g_sensitivity, sensor: gyro, axis: zy, value: 2e-6, start_s: .., end_s: ..}]
+void read_effects(const Node& root, RunConfig& run) {
+  const auto effects = root.find("effects");
+  if (!effects) return;
+  if (run.tight) throw effects->error("effects of a tightly coupled run", "positions: they are taken out of fixes");
+  const std::vector<diagnose::Effect>& catalogue = diagnose::catalogue();
+  for (const Node& item : effects->items()) {
+    std::vector<std::string_view> names;
+    for (const diagnose::Effect& effect : catalogue) names.push_back(effect.name);
+    const std::string_view name = names[item.at("name").choice(names)];
+    const std::string sensor = item.at("sensor").text();
+    const auto effect = std::ranges::find_if(
+        catalogue, [&](const diagnose::Effect& e) { return e.name == name && diagnose::name(e.site) == sensor; });
+    if (effect == catalogue.end())
+      throw item.at("sensor").error(fmt::format("no {} of {}", name, sensor), "the sensor that diagnosis.json names with it");
+    diagnose::NamedEffect one{&*effect, 0, item.at("value").number(), {}, {}};
+    const std::vector<std::string_view> axes(effect->axes.begin(), effect->axes.end());
+    if (!axes.front().empty()) one.axis = static_cast<Eigen::Index>(item.at("axis").choice(axes));
+    if (const auto from = item.find("start_s")) one.from_s = from->number();
+    if (const auto to = item.find("end_s")) one.to_s = to->number();
+    run.effects.push_back(one);
+  }
+}
+
 void read_outages(const Node& root, RunConfig& run) {
   const auto outages = root.find("outages");
   if (!outages) return;
@@ -265,6 +289,7 @@ RunConfig read_run_config(const std::filesystem::path& file) {
     static_cast<void>(root.choice("start", {"auto"}, 0));
   if (const auto filter = root.find("filter")) read_filter(*filter, run);
   read_vehicle(root, run.setup);
+  read_effects(root, run);
   read_outages(root, run);
   read_smoother(root, run);
   read_output(root, run);

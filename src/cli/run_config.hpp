@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "coast/config/node.hpp"
+#include "coast/diagnose/correction.hpp"
 #include "coast/geo/rotation.hpp"
 #include "coast/io/gnss.hpp"
 #include "coast/io/imu.hpp"
@@ -53,6 +54,7 @@ struct RunConfig {
   Eigen::Vector3d reference_lever_arm_b = Eigen::Vector3d::Zero();
   study::Setup setup;
   std::optional<GivenStart> start;
+  std::vector<diagnose::NamedEffect> effects;  ///< to be taken out of the recordings before anything else
   std::vector<OutageSeconds> outages;
   std::optional<study::OutageSweep> sweep;
   int passes = 1;  ///< odd: forward, then backward and forward again

@@ -1,8 +1,12 @@
 #include "coast/diagnose/correction.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 
 #include "coast/geo/earth.hpp"
+#include "coast/record/error.hpp"
+#include "mission_run.hpp"
 
 namespace coast::diagnose {
 
@@ -89,6 +93,24 @@ MissionInput without(const std::vector<Taken>& taken, const MissionInput& input,
   correct_samples(in_recordings, hypotheses, path, result.imu);
   correct_fixes(in_recordings, hypotheses, path, mission, layout, result.gnss);
   return result;
+}
+
+MissionInput without(const std::vector<NamedEffect>& effects, const MissionInput& input, const study::Progress& progress) {
+  const MissionRun run(input, grade_of(input.setup.model), progress);
+  const int week = input.imu.samples.front().t.week();
+  const std::vector<Hypothesis>& all = run.hypotheses().all();
+  std::vector<Taken> taken;
+  for (const NamedEffect& one : effects) {
+    const auto h = std::ranges::find_if(all, [&](const Hypothesis& x) { return x.effect == one.effect && x.axis == one.axis; });
+    if (h == all.end())
+      throw InputError({input.imu.source, 0, fmt::format("nothing that {} could act on", one.effect->name),
+                        "a recording with temperatures", ""});
+    Taken t{h - all.begin(), {}, {}, one.value};
+    if (one.from_s) t.from = geo::GpsTime::from_week(week, *one.from_s);
+    if (one.to_s) t.to = geo::GpsTime::from_week(week, *one.to_s);
+    taken.push_back(t);
+  }
+  return without(taken, input, run.hypotheses(), run.path(), run.mission(), run.layout());
 }
 
 }  // namespace coast::diagnose

@@ -41,6 +41,7 @@ class Search {
     run();  // from a start that is loose
     result_.grade = grade_;
     result_.before = run_->fit();
+    result_.innovations_before = run_->solution().forward.innovations;
   }
 
   /// @return  whether something was done that may show more
@@ -77,6 +78,7 @@ class Search {
     for (std::size_t i = 0; i < result_.findings.size(); ++i) result_.findings[i].value = taken_[i].value;
     join_entries_with_exits();
     result_.after = run_->fit();
+    result_.innovations_after = run_->solution().forward.innovations;
     result_.modelled = std::move(current_);
     return std::move(result_);
   }

@@ -164,13 +164,22 @@ Eigen::VectorXd minimise(const Objective& objective, Eigen::VectorXd theta, cons
     if (progress) progress(1.0 - 1.0 / (1.0 + 0.1 * ++calls));  // the number of iterations is not known beforehand
     return value;
   };
-  double value = 0.0;
-  try {
-    solver.minimize(function, theta, value, low, high);
-  } catch (const std::runtime_error&) {
-    // The line search gives up where finite differences end: the best point seen is the answer.
-  } catch (const std::logic_error&) {
-    // It calls a direction that leads uphill a mistake of the caller's: finite differences again.
+  // The line search gives up (runtime_error), or calls a direction that leads uphill a mistake of the caller's (logic_error),
+  // where finite differences end; or where the curvature that was gathered far away misleads. From the best point seen, without
+  // that memory, the search goes on as long as it gets anywhere.
+  constexpr int kMostStarts = 6;
+  constexpr double kNowhere = 1e-5;  // of the mean log-likelihood of an innovation
+  for (int start = 0; start < kMostStarts; ++start) {
+    const double before = best_value;
+    theta = best;
+    double value = 0.0;
+    try {
+      solver.minimize(function, theta, value, low, high);
+      break;
+    } catch (const std::runtime_error&) {
+    } catch (const std::logic_error&) {
+    }
+    if (start > 0 && before - best_value < kNowhere) break;
   }
   return best;
 }

@@ -72,7 +72,7 @@ void PreparedMission::fit_and_adopt(const Progress& progress) {
   refine_start(progress);
   const estimate::NoiseAdjustment first = estimate::starting_point(stated, *setup_.noise_fit);
   estimate::NoiseAdjustment from = first;
-  const double before_outages = setup_.refine_before ? *setup_.refine_before - start_.nav.t : kFitWindow;
+  const double before_outages = setup_.fit_before ? *setup_.fit_before - start_.nav.t : kFitWindow;
   const double longest = before_outages < kShortestFit ? kFitWindow : std::min(kFitWindow, before_outages);
   for (const double window : {std::min(kRefineWindow, longest), longest}) {
     setup_.model = stated_model;

@@ -18,6 +18,15 @@ struct Taken {
   [[nodiscard]] bool holds(geo::GpsTime t) const { return (!from || t >= *from) && (!to || t < *to); }
 };
 
+/// The same without a recording at hand: how files name it.
+struct NamedEffect {
+  const Effect* effect = nullptr;
+  Eigen::Index axis = 0;
+  double value = 0.0;
+  std::optional<double> from_s;  ///< seconds of week
+  std::optional<double> to_s;
+};
+
 /// What is filtered.
 struct MissionInput {
   record::ImuRecording imu;  ///< body axes
@@ -33,5 +42,10 @@ struct MissionInput {
 [[nodiscard]] MissionInput without(const std::vector<Taken>& taken, const MissionInput& input, const Hypotheses& hypotheses,
                                    const std::vector<record::NavState>& path, const estimate::Mission& mission,
                                    const estimate::StateLayout& layout);
+
+/// The input without effects that somebody names. Takes a run for the trajectory that they are taken out along.
+/// @throws InputError  an effect that this recording cannot have: no temperature
+[[nodiscard]] MissionInput without(const std::vector<NamedEffect>& effects, const MissionInput& input,
+                                   const study::Progress& progress);
 
 }  // namespace coast::diagnose

@@ -70,6 +70,8 @@ struct Diagnosis {
   Fit before;
   Fit after;
   std::size_t runs = 0;
+  std::vector<estimate::InnovationRecord> innovations_before;
+  std::vector<estimate::InnovationRecord> innovations_after;
   MissionInput modelled;  ///< with what was found taken out
 };
 

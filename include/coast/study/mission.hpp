@@ -27,8 +27,9 @@ struct Setup {
   bool vehicle_forward = false;            ///< the body points where the vehicle goes
   std::optional<ins::InitialState> start;  ///< given; otherwise found
   /// Where the first studied outage begins: the start is refined with fixes before it alone, or the outage would look too good.
-  /// So is noise fitted, where at least 100 s come before it.
   std::optional<geo::GpsTime> refine_before;
+  /// Noise is fitted to what comes before it, where that is at least 100 s.
+  std::optional<geo::GpsTime> fit_before;
   std::optional<estimate::NoiseFitChoice> noise_fit;
   /// The delivered solution is smoothed as a batch; outages that are swept and starts that are refined are not.
   std::optional<estimate::BatchOptions> batch;
