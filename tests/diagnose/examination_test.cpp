@@ -21,7 +21,7 @@ TEST(LargestByChance, IsThatOfIndependentSquares) {
   EXPECT_NEAR(LargestByChance{57.0}.quantile(0.05), noise::chi2_upper_quantile(1.0, 1.0 - std::pow(0.95, 1.0 / 57.0)), 1e-9);
 }
 
-// METHODS of geodesy: noncentrality 17.07 at alpha = 0.1 % and power 80 % (Baarda 1968).
+// Geodesy: noncentrality 17.07 at alpha = 0.1 % and power 80 % (Baarda 1968).
 TEST(MinimalDetectable, IsBaardas) {
   EXPECT_NEAR(minimal_detectable(1.0, noise::chi2_upper_quantile(1.0, 0.001)), std::sqrt(17.07), 2e-3);
   EXPECT_NEAR(minimal_detectable(3.0, 10.8), 3.0 * minimal_detectable(1.0, 10.8), 1e-12);

@@ -13,7 +13,7 @@ Effect antenna_phase_center_heading_dependent() {
       .equation = "d(r)_D = a cos(heading) + b sin(heading)",
       .meaning = "The antenna's phase centre moves up and down with the heading.",
       .separating_manoeuvre = "All headings at constant speed, both ways round.",
-      .source = "METHODS of antenna calibration: azimuth-dependent phase-centre variations",
+      .source = "ANTEX 1.4: azimuth-dependent phase-centre variations",
       .axes = {"cos", "sin"},
       .plausible = {0.01, 0.01, 0.01, 0.01},
       .position =
