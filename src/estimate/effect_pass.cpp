@@ -91,11 +91,11 @@ class EffectRecursion {
         null_(Eigen::MatrixXd::Zero(effects, options.draws)) {}
 
   void through_transition(const Knot& knot, const NavRows& W) {
-    const Eigen::MatrixXd N_W = of_states_.N().leftCols<kNav>() * W;
-    N_.noalias() += W.transpose() * N_W.topRows<kNav>();
+    const Eigen::MatrixXd NW = of_states_.N().leftCols<kNav>() * W;
+    N_.noalias() += W.transpose() * NW.topRows<kNav>();
     const Eigen::MatrixXd cross = W.transpose() * N_cross_.topRows<kNav>();
     N_ += cross + cross.transpose();
-    N_cross_ += N_W;
+    N_cross_ += NW;
     times_phi_transposed(knot, N_cross_);
     r_.noalias() += W.transpose() * of_states_.r().head<kNav>();
     null_.noalias() += W.transpose() * null_x_.topRows<kNav>();
@@ -109,13 +109,13 @@ class EffectRecursion {
     draw(u, D);
     const Eigen::MatrixXd NK = of_states_.N() * u.K;               // n x m
     const Eigen::MatrixXd KtN_cross = u.K.transpose() * N_cross_;  // m x p
-    const Eigen::MatrixXd S_inv_KtNK = u.S_inv + u.K.transpose() * NK;
+    const Eigen::MatrixXd weight = u.S_inv + u.K.transpose() * NK;
     const Eigen::MatrixXd DtKtN = D.transpose() * KtN_cross;
-    N_.noalias() += D.transpose() * (S_inv_KtNK * D);
+    N_.noalias() += D.transpose() * (weight * D);
     N_ -= DtKtN + DtKtN.transpose();
     // H' S^-1 D + (I - K H)' (N_cross - N K D)
     N_cross_.noalias() -= NK * D;
-    N_cross_.noalias() += u.H.transpose() * (S_inv_KtNK * D - KtN_cross);
+    N_cross_.noalias() += u.H.transpose() * (weight * D - KtN_cross);
     of_states_.through_update(u);
   }
 

@@ -16,8 +16,8 @@
 #include "coast/carrier/surface_weather.hpp"
 #include "coast/carrier/wind_up.hpp"
 #include "coast/geo/units.hpp"
-#include "constellation.hpp"
 #include "coast/simulate/random.hpp"
+#include "constellation.hpp"
 
 namespace coast::simulate {
 
