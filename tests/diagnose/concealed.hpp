@@ -1,6 +1,8 @@
 #pragma once
 // Simulated missions in which something is not as the configuration says.
 
+#include <fmt/format.h>
+
 #include "coast/diagnose/diagnosis.hpp"
 #include "coast/io/yaml.hpp"
 #include "coast/simulate/scenario.hpp"

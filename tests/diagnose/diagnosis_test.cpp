@@ -3,6 +3,7 @@
 
 #include "coast/diagnose/diagnosis.hpp"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include "diagnose/concealed.hpp"
