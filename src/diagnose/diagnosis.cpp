@@ -17,17 +17,24 @@ constexpr double kSettled = 0.1;       // sd that a coefficient may still move
 // Alternatives are told where the data alone, or with what is plausible, hold them for more than a thousandth as likely.
 constexpr double kLogOdds = 7.0;
 
-/// A start that the data decide: it was found by a run that knew nothing of the effect, which may be in it.
-ins::InitialState loosened(const study::PreparedMission& mission, const record::NavState& smoothed) {
+/// A start that the data decide: it was found by a run that knew nothing of the effect, which may be in it. The filter is
+/// linearised about what that run found of the sensors too: with biases at their prior mean, tilts are wrong by mrad until the
+/// first manoeuvres, and the square of a tilt looks like a vertical bias that ends there.
+void loosen_start(const study::PreparedMission& mission, const estimate::SmoothedKnot& smoothed,
+                  const estimate::StateLayout& layout, study::Setup& setup) {
   constexpr double kPosition = 1.0;  // m
   constexpr double kVelocity = 0.3;  // m/s
   constexpr double kAttitude = 3.0;  // times the alignment's
   ins::InitialState start = mission.start();
-  start.nav = smoothed;
+  start.nav = smoothed.nav;
   start.sd_position_n = start.sd_position_n.cwiseMax(kPosition);
   start.sd_velocity_n = start.sd_velocity_n.cwiseMax(kVelocity);
-  if (!mission.setup().start) start.sd_attitude_n *= kAttitude;
-  return start;
+  if (!mission.setup().start) {
+    start.sd_attitude_n *= kAttitude;
+    if (start.gyro_bias_sd) *start.gyro_bias_sd *= kAttitude;
+  }
+  setup.start = start;
+  setup.start_sensor_errors = smoothed.x.head(layout.sensor_end());
 }
 
 /// The mission with what has been taken so far, and the search's next step.
@@ -98,7 +105,7 @@ class Search {
   /// @param last  a run whose trajectory the effects are taken out along
   void run_from(const MissionRun& last) {
     current_ = without(taken_, input_, last.hypotheses(), last.path(), last.mission(), last.layout());
-    current_.setup.start = loosened(last.prepared(), last.solution().smoothed.front().nav);
+    loosen_start(last.prepared(), last.solution().smoothed.front(), last.layout(), current_.setup);
     run_current();
   }
   void run_current() {

@@ -127,6 +127,7 @@ void PreparedMission::find_standstill() {
 void PreparedMission::align(const Progress& progress) {
   if (setup_.start) {
     start_ = *setup_.start;
+    start_sensor_errors_ = setup_.start_sensor_errors;
     return;
   }
   if (progress) progress("aligning", 0.0);

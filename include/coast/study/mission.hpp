@@ -26,6 +26,8 @@ struct Setup {
   estimate::FilterOptions filter;
   bool vehicle_forward = false;            ///< the body points where the vehicle goes
   std::optional<ins::InitialState> start;  ///< given; otherwise found
+  /// Sensor states that a given start begins with, by the layout; empty: what the alignment knows.
+  Eigen::VectorXd start_sensor_errors;
   /// Where the first studied outage begins: the start is refined with fixes before it alone, or the outage would look too good.
   std::optional<geo::GpsTime> refine_before;
   /// Noise is fitted to what comes before it, where that is at least 100 s.
