@@ -27,7 +27,9 @@ void diagnose(const std::filesystem::path& run_yaml, const CommonOptions& option
   const diagnose::MissionInput input{std::move(recordings.imu), std::move(recordings.gnss), setup};
   const diagnose::Diagnosis diagnosis = diagnose::diagnose(input, {}, progress);
   line.clear();
-  const std::string diagnosed = diagnosed_yaml(config.root.resolved_yaml(), diagnosis);
+  const std::filesystem::path error_model = std::filesystem::absolute(out / "error_model.diagnosed.yaml");
+  const std::string diagnosed = diagnosed_yaml(config.root.resolved_yaml(), diagnosis, error_model.string());
+  if (changes_error_model(diagnosis)) io::write_text(error_model, diagnosis.modelled.setup.model.yaml());
   io::write_text(out / "diagnosis.json", diagnosis_json(diagnosis, input));
   io::write_text(out / "run.diagnosed.yaml", diagnosed);
   const report::Page page = diagnosis_page(run_yaml.filename().string(), diagnosis, diagnosed);

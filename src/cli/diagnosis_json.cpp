@@ -20,13 +20,21 @@ std::string full_name(const Hypothesis& h) {
   return fmt::format("{}{}{}", h.effect->name, h.axis_name().empty() ? "" : " ", h.axis_name());
 }
 
+Json parameter_json(std::string_view name, double value, std::string_view unit) {
+  return {{"name", name}, {"value", value}, {"unit", unit}};
+}
+
 Json finding_json(const diagnose::Finding& f, double start_s, double end_s) {
+  const diagnose::Effect& effect = *f.hypothesis.effect;
   Json j = hypothesis_json(f.hypothesis);
   j["t_start_s"] = f.from ? f.from->sow() : start_s;
   j["t_end_s"] = f.to ? f.to->sow() : end_s;
   if (f.from) j["t_start_std_s"] = f.from_sd_s;
-  j["parameters"] = Json::array(
-      {{{"name", f.hypothesis.effect->parameter}, {"value", f.value}, {"std", f.sd}, {"unit", f.hypothesis.effect->unit}}});
+  j["parameters"] = Json::array({{{"name", effect.parameter}, {"value", f.value}, {"std", f.sd}, {"unit", effect.unit}}});
+  for (const diagnose::FixedParameter& one : effect.fixed)
+    j["parameters"].push_back(parameter_json(one.name, one.value, one.unit));
+  if (!effect.relation.empty()) j["relation"] = effect.relation;
+  if (f.stability) j["stability"] = *f.stability;
   j["delta_log_likelihood"] = f.delta_log_likelihood;
   j["p_value"] = f.p_value;
   j["explanation"] = explanation(f);
@@ -34,7 +42,7 @@ Json finding_json(const diagnose::Finding& f, double start_s, double end_s) {
   for (const diagnose::Alternative& a : f.alternatives) {
     Json other = hypothesis_json(a.hypothesis);
     other["log_odds"] = a.log_odds;
-    other["separating_manoeuvre"] = f.hypothesis.effect->separating_manoeuvre;
+    other["separating_manoeuvre"] = effect.separating_manoeuvre;
     j["confounded_with"].push_back(other);
   }
   return j;
@@ -43,10 +51,17 @@ Json finding_json(const diagnose::Finding& f, double start_s, double end_s) {
 Json noise_json(const diagnose::NoiseFinding& f, double start_s, double end_s) {
   Json j = {{"name", f.name}, {"sensor", f.sensor}, {"axis", f.axis}, {"t_start_s", start_s}, {"t_end_s", end_s}};
   j["parameters"] = Json::array({{{"name", f.parameter}, {"value", f.value}, {"std", f.sd}, {"unit", f.unit}}});
+  if (f.time_s > 0.0) j["parameters"].push_back(parameter_json("correlation_time", f.time_s, "s"));
   j["delta_log_likelihood"] = f.delta_log_likelihood;
   j["p_value"] = f.p_value;
-  j["explanation"] = "The innovations are likelier with this noise than with the one stated.";
+  j["explanation"] = explanation(f);
   j["confounded_with"] = Json::array();
+  for (const diagnose::NoiseFinding::Alternative& a : f.alternatives)
+    j["confounded_with"].push_back({{"name", a.effect->name},
+                                    {"sensor", f.sensor},
+                                    {"axis", f.axis},
+                                    {"log_odds", a.log_odds},
+                                    {"separating_manoeuvre", f.effect->separating_manoeuvre}});
   return j;
 }
 
@@ -63,6 +78,17 @@ std::string explanation(const diagnose::Finding& f) {
                           std::exp(f.alternatives[i].log_odds));
     text += fmt::format(". What would tell: {}", effect.separating_manoeuvre);
   }
+  return text;
+}
+
+std::string explanation(const diagnose::NoiseFinding& f) {
+  if (f.effect == nullptr) return "The innovations are likelier with this noise than with the one stated.";
+  std::string text = fmt::format("{} {}: {} = {:.3g} +- {:.2g} {}", f.effect->meaning, f.effect->equation, f.parameter, f.value,
+                                 f.sd, f.unit);
+  text += f.time_s > 0.0 ? fmt::format(", T about {:g} s.", f.time_s) : ".";
+  for (const diagnose::NoiseFinding::Alternative& a : f.alternatives)
+    text += fmt::format(" It could also be {} (1 : {:.0f}).", a.effect->name, std::exp(a.log_odds));
+  if (!f.alternatives.empty()) text += fmt::format(" What would tell: {}", f.effect->separating_manoeuvre);
   return text;
 }
 
@@ -107,24 +133,6 @@ std::string diagnosis_text(const diagnose::Diagnosis& d) {
                         f.from ? fmt::format(" from {:.1f} s", f.from->sow()) : std::string(), explanation(f));
   for (const diagnose::NoiseFinding& f : d.noise)
     text += fmt::format("{} {} {}: {} = {:.3g} +- {:.2g} {}\n", f.name, f.sensor, f.axis, f.parameter, f.value, f.sd, f.unit);
-  return text;
-}
-
-std::string diagnosed_yaml(const std::string& resolved, const diagnose::Diagnosis& d) {
-  std::string text = resolved;
-  if (!text.empty() && text.back() != '\n') text += '\n';
-  for (const diagnose::NoiseFinding& f : d.noise)
-    text += fmt::format("# noise found beside what is stated: {} {} {}: {} = {:.4g} {}\n", f.name, f.sensor, f.axis,
-                        f.parameter, f.value, f.unit);
-  if (d.findings.empty()) return text;
-  text += "effects:\n";
-  for (const diagnose::Finding& f : d.findings) {
-    text += fmt::format("  - {{name: {}, sensor: {}, ", f.hypothesis.effect->name, diagnose::name(f.hypothesis.effect->site));
-    if (!f.hypothesis.axis_name().empty()) text += fmt::format("axis: {}, ", f.hypothesis.axis_name());
-    if (f.from) text += fmt::format("start_s: {:.6f}, ", f.from->sow());
-    if (f.to) text += fmt::format("end_s: {:.6f}, ", f.to->sow());
-    text += fmt::format("value: {:.17g}}}  # +- {:.2g} {}\n", f.value, f.sd, f.hypothesis.effect->unit);
-  }
   return text;
 }
 

@@ -11,12 +11,16 @@ namespace coast::cli {
 /// Schema coast.diagnosis/1.
 [[nodiscard]] std::string diagnosis_json(const diagnose::Diagnosis& diagnosis, const diagnose::MissionInput& input);
 [[nodiscard]] std::string diagnosis_text(const diagnose::Diagnosis& diagnosis);
-/// The run's own configuration with what was found under `effects`, in place of those that stood there.
-/// @param resolved  run.resolved.yaml
-[[nodiscard]] std::string diagnosed_yaml(const std::string& resolved, const diagnose::Diagnosis& diagnosis);
+/// The run's own configuration with what was found: `effects`, the GNSS noise, and the error model of that name where it has
+/// changed. @param resolved  run.resolved.yaml
+[[nodiscard]] std::string diagnosed_yaml(const std::string& resolved, const diagnose::Diagnosis& diagnosis,
+                                         const std::string& error_model);
+/// Whether an error model with what was found differs from the configured one.
+[[nodiscard]] bool changes_error_model(const diagnose::Diagnosis& diagnosis);
 [[nodiscard]] report::Page diagnosis_page(const std::string& title, const diagnose::Diagnosis& diagnosis,
                                           const std::string& diagnosed_yaml);
 /// What was found, how large and what else it could be, in a paragraph.
 [[nodiscard]] std::string explanation(const diagnose::Finding& finding);
+[[nodiscard]] std::string explanation(const diagnose::NoiseFinding& finding);
 
 }  // namespace coast::cli

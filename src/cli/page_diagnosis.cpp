@@ -79,6 +79,9 @@ report::Section missing_section(const Diagnosis& d) {
   for (const diagnose::Finding& f : d.findings)
     section.notes.push_back({report::Note::Kind::kWarning,
                              fmt::format("{} {}", f.hypothesis.effect->name, f.hypothesis.axis_name()), explanation(f)});
+  for (const diagnose::NoiseFinding& f : d.noise)
+    section.notes.push_back(
+        {report::Note::Kind::kWarning, fmt::format("{} {} {}", f.name, f.sensor, f.axis), explanation(f)});
   section.tables.push_back(finding_table(d));
   return section;
 }

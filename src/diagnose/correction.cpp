@@ -7,6 +7,7 @@
 #include "coast/geo/earth.hpp"
 #include "coast/record/error.hpp"
 #include "mission_run.hpp"
+#include "noise_scan.hpp"
 
 namespace coast::diagnose {
 
@@ -18,6 +19,15 @@ Eigen::VectorXd coefficients_at(geo::GpsTime t, const std::vector<Taken>& taken,
   for (const Taken& one : taken)
     if (one.holds(t)) c(one.hypothesis) += one.value;
   return c;
+}
+
+constexpr double kLevelStep = 0.5;  // s, over which a noise level is a mean
+
+std::vector<geo::GpsTime> instants(const std::vector<record::NavState>& path, double step) {
+  std::vector<geo::GpsTime> t;
+  for (const record::NavState& nav : path)
+    if (t.empty() || nav.t - t.back() >= step) t.push_back(nav.t);
+  return t;
 }
 
 const record::NavState& nearest(const std::vector<record::NavState>& path, geo::GpsTime t) {
@@ -96,11 +106,15 @@ MissionInput without(const std::vector<Taken>& taken, const MissionInput& input,
 }
 
 MissionInput without(const std::vector<NamedEffect>& effects, const MissionInput& input, const study::Progress& progress) {
-  const MissionRun run(input, grade_of(input.setup.model), progress);
+  std::vector<EffectPtr> suggested;
+  for (const NamedEffect& one : effects)
+    if (one.suggested) suggested.push_back(one.suggested);
+  const MissionRun run(input, grade_of(input.setup.model), suggested, progress);
   const int week = input.imu.samples.front().t.week();
   const std::vector<Hypothesis>& all = run.hypotheses().all();
   std::vector<Taken> taken;
   for (const NamedEffect& one : effects) {
+    if (one.noise != nullptr) continue;
     const auto h = std::ranges::find_if(all, [&](const Hypothesis& x) { return x.effect == one.effect && x.axis == one.axis; });
     if (h == all.end())
       throw InputError({input.imu.source, 0, fmt::format("nothing that {} could act on", one.effect->name),
@@ -110,7 +124,12 @@ MissionInput without(const std::vector<NamedEffect>& effects, const MissionInput
     if (one.to_s) t.to = geo::GpsTime::from_week(week, *one.to_s);
     taken.push_back(t);
   }
-  return without(taken, input, run.hypotheses(), run.path(), run.mission(), run.layout());
+  MissionInput result = without(taken, input, run.hypotheses(), run.path(), run.mission(), run.layout());
+  const std::vector<geo::GpsTime> t = instants(run.path(), kLevelStep);
+  for (const NamedEffect& one : effects)
+    if (one.noise != nullptr)
+      one.noise->add(result, static_cast<int>(one.axis), one.value, 0.0, t, level_of(*one.noise, t, run));
+  return result;
 }
 
 }  // namespace coast::diagnose

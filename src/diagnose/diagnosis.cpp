@@ -5,8 +5,10 @@
 #include <cmath>
 #include <utility>
 
+#include "form_scan.hpp"
 #include "mission_run.hpp"
 #include "noise_check.hpp"
+#include "noise_scan.hpp"
 
 namespace coast::diagnose {
 
@@ -16,12 +18,18 @@ constexpr double kContradicted = 4.0;  // sd of the innovations' variance or cor
 constexpr double kSettled = 0.1;       // sd that a coefficient may still move
 // Alternatives are told where the data alone, or with what is plausible, hold them for more than a thousandth as likely.
 constexpr double kLogOdds = 7.0;
+// Of the false alarms that are allowed the catalogue has what these leave.
+constexpr double kNoiseFalseAlarm = 0.01;  // random effects
+constexpr double kFormFalseAlarm = 0.005;  // lines, and relations
+constexpr double kStable = 0.5;            // of a relation, from where it is believed
+constexpr double kUncertain = 0.1;         // of a likelihood ratio whose variance is that of some hundred draws
+constexpr std::size_t kMostRandom = 4;
 
 /// A start that the data decide: it was found by a run that knew nothing of the effect, which may be in it. The filter is
 /// linearised about what that run found of the sensors too: with biases at their prior mean, tilts are wrong by mrad until the
 /// first manoeuvres, and the square of a tilt looks like a vertical bias that ends there.
 void loosen_start(const study::PreparedMission& mission, const estimate::SmoothedKnot& smoothed,
-                  const estimate::StateLayout& layout, study::Setup& setup) {
+                  const estimate::StateLayout& layout, MissionInput& input) {
   constexpr double kPosition = 1.0;  // m
   constexpr double kVelocity = 0.3;  // m/s
   constexpr double kAttitude = 3.0;  // times the alignment's
@@ -33,8 +41,8 @@ void loosen_start(const study::PreparedMission& mission, const estimate::Smoothe
     start.sd_attitude_n *= kAttitude;
     if (start.gyro_bias_sd) *start.gyro_bias_sd *= kAttitude;
   }
-  setup.start = start;
-  setup.start_sensor_errors = smoothed.x.head(layout.sensor_end());
+  input.setup.start = start;
+  input.setup.start_sensor_errors = sensor_states_in(layout_of(input), layout, smoothed.x);
 }
 
 /// The mission with what has been taken so far, and the search's next step.
@@ -53,23 +61,19 @@ class Search {
 
   /// @return  whether something was done that may show more
   bool step() {
-    const Examination examination =
-        examine(run_->mission(), run_->layout(), run_->solution().knots, run_->hypotheses(), {.seed = options_.seed});
+    const Examination examination = examined();
     const bool settled = follow(examination);
     suspicions_ = suspicions(examination, run_->hypotheses(), of_whole_mission());
-    result_.threshold = suspicions_.chance.quantile(options_.false_alarm_probability);
+    result_.threshold = suspicions_.chance.quantile(of_catalogue());
     const Suspicion* best = result_.findings.size() < most() ? likeliest() : nullptr;
     const double mean_gain = best != nullptr ? 0.5 * best->likelihood_ratio : 0.0;
-    if (!noise_ && !noise_tried_ && contradiction(run_->solution().forward.innovations) > kContradicted) {
-      noise_tried_ = true;
-      noise_ = fitted_noise(run_->prepared(), last_fit_, progress_);
-      if (noise_) last_fit_ = noise_->fit;
-      if (noise_ && noise_->gain() > mean_gain) {
-        run();
-        return true;
-      }
-      noise_.reset();
+    const std::optional<Proposal> form = result_.findings.size() < most() ? likeliest_form(examination) : std::nullopt;
+    const double form_gain = form ? 0.5 * form->likelihood_ratio - form->log_places : 0.0;
+    if (take_noise(examination, std::max(mean_gain, form ? form_gain + kUncertain * form->likelihood_ratio : 0.0))) {
+      run();
+      return true;
     }
+    if (form && form_gain > mean_gain && try_out(*form)) return true;
     if (best == nullptr && settled) return false;
     if (best == nullptr) {
       run();
@@ -82,8 +86,11 @@ class Search {
   Diagnosis finish() {
     describe_what_was_not_found();
     if (noise_) result_.noise = noise_->findings;
+    std::ranges::move(random_effects_, std::back_inserter(result_.noise));
     for (std::size_t i = 0; i < result_.findings.size(); ++i) result_.findings[i].value = taken_[i].value;
     join_entries_with_exits();
+    join_quadratures();
+    result_.suggested.insert(result_.suggested.end(), suggested_.begin(), suggested_.end());
     result_.after = run_->fit();
     result_.innovations_after = run_->solution().forward.innovations;
     result_.modelled = std::move(current_);
@@ -91,6 +98,13 @@ class Search {
   }
 
  private:
+  [[nodiscard]] Examination examined() const {
+    return examine(run_->mission(), run_->layout(), run_->solution().knots, run_->hypotheses(), {.seed = options_.seed});
+  }
+  [[nodiscard]] double of_catalogue() const {
+    return std::max(0.5 * options_.false_alarm_probability,
+                    options_.false_alarm_probability - kNoiseFalseAlarm - 2.0 * kFormFalseAlarm);
+  }
   [[nodiscard]] std::size_t most() const { return static_cast<std::size_t>(options_.most_effects); }
 
   void run() {
@@ -105,16 +119,92 @@ class Search {
   /// @param last  a run whose trajectory the effects are taken out along
   void run_from(const MissionRun& last) {
     current_ = without(taken_, input_, last.hypotheses(), last.path(), last.mission(), last.layout());
-    loosen_start(last.prepared(), last.solution().smoothed.front(), last.layout(), current_.setup);
+    model_noise();
+    loosen_start(last.prepared(), last.solution().smoothed.front(), last.layout(), current_);
     run_current();
   }
-  void run_current() {
+  void model_noise() {
     if (noise_) {
       current_.setup.model = estimate::adjusted(current_.setup.model, noise_->fit.adjustment);
       current_.setup.filter = estimate::adjusted(current_.setup.filter, noise_->fit.adjustment);
     }
-    run_ = std::make_unique<MissionRun>(current_, grade_, progress_);
+    for (const AddedNoise& one : added_) one.add_to(current_);
+  }
+  void run_current() {
+    run_ = std::make_unique<MissionRun>(current_, grade_, suggested_, progress_);
     ++result_.runs;
+  }
+
+  /// Noise first where it explains more than the likeliest mean effect: a fit of what is stated, or a random effect beside it.
+  bool take_noise(const Examination& examination, double mean_gain) {
+    std::optional<FittedNoise> stated;
+    if (!noise_ && !noise_tried_ && contradiction(run_->solution().forward.innovations) > kContradicted) {
+      noise_tried_ = true;
+      stated = fitted_noise(run_->prepared(), last_fit_, progress_);
+      if (stated) last_fit_ = stated->fit;
+    }
+    const double stated_gain = stated ? stated->gain() : 0.0;
+    if (added_.size() < kMostRandom && take_random_effect(examination, std::max(mean_gain, stated_gain))) return true;
+    if (!stated || stated_gain <= mean_gain) return false;
+    noise_ = std::move(stated);
+    return true;
+  }
+
+  /// The likeliest random effect of an axis, and on the same axis the others, whose gains are set against each other.
+  bool take_random_effect(const Examination& examination, double to_beat) {
+    const NoiseSuspicions suspected = noise_suspicions(examination, *run_);
+    const NoiseSuspicion* first = nullptr;
+    for (const NoiseSuspicion& s : suspected.all)
+      if (s.p_value < kNoiseFalseAlarm && !was_refused(s.noise) &&
+          (first == nullptr || s.likelihood_ratio > first->likelihood_ratio))
+        first = &s;
+    if (first == nullptr) return false;
+    std::vector<FittedEffect> fits;
+    for (const NoiseEffect& effect : noise_catalogue())
+      if (const NoiseSuspicion* s = strongest(suspected, effect, first->noise))
+        fits.push_back(fitted_effect(s->noise, current_, run_->layout(), run_->log_likelihood()));
+    std::ranges::sort(fits, std::ranges::greater{}, &FittedEffect::gain);
+    const FittedEffect& best = fits.front();
+    const double p_value = suspected.chance.p_value(2.0 * std::max(0.0, best.gain));
+    if (p_value > kNoiseFalseAlarm || best.gain <= to_beat) {
+      if (p_value > kNoiseFalseAlarm) refused_noise_.push_back(first->noise);
+      return false;
+    }
+    describe(fits, p_value);
+    added_.push_back(best.noise);
+    return true;
+  }
+  [[nodiscard]] bool was_refused(const AddedNoise& noise) const {
+    return std::ranges::any_of(refused_noise_, [&](const AddedNoise& other) {
+      return other.axis == noise.axis && other.effect->site == noise.effect->site;
+    });
+  }
+  static const NoiseSuspicion* strongest(const NoiseSuspicions& suspected, const NoiseEffect& effect, const AddedNoise& beside) {
+    const NoiseSuspicion* best = nullptr;
+    for (const NoiseSuspicion& s : suspected.all)
+      if (s.noise.effect == &effect && effect.site == beside.effect->site && s.noise.axis == beside.axis &&
+          (best == nullptr || s.likelihood_ratio > best->likelihood_ratio))
+        best = &s;
+    return best;
+  }
+  /// @param fits  the first is taken
+  void describe(const std::vector<FittedEffect>& fits, double p_value) {
+    const FittedEffect& f = fits.front();
+    NoiseFinding finding{.name = std::string(f.noise.effect->name),
+                         .sensor = std::string(name(f.noise.effect->site)),
+                         .axis = std::string(1, static_cast<char>('x' + f.noise.axis)),
+                         .parameter = std::string(f.noise.effect->parameter),
+                         .unit = std::string(f.noise.effect->unit),
+                         .value = f.noise.root,
+                         .sd = f.noise.root * f.log_sd,
+                         .delta_log_likelihood = f.gain,
+                         .p_value = p_value,
+                         .time_s = f.noise.time,
+                         .effect = f.noise.effect};
+    for (std::size_t i = 1; i < fits.size(); ++i)
+      if (f.gain - fits[i].gain < kLogOdds)
+        finding.alternatives.push_back({fits[i].noise.effect, fits[i].noise.time, f.gain - fits[i].gain});
+    random_effects_.push_back(std::move(finding));
   }
 
   [[nodiscard]] std::vector<Eigen::Index> of_whole_mission() const {
@@ -189,10 +279,54 @@ class Search {
     run_from(*start);
   }
 
+  /// A line or a relation that no catalogue has, where chance does not explain it.
+  [[nodiscard]] std::optional<Proposal> likeliest_form(const Examination& examination) const {
+    std::optional<Proposal> best;
+    for (const std::optional<Proposal>& form : {strongest_line(examination), likeliest_relation(examination, *run_)}) {
+      if (!form || form->p_value > kFormFalseAlarm || form->stability < kStable || was_refused(*form)) continue;
+      if (!best || form->likelihood_ratio - 2.0 * form->log_places > best->likelihood_ratio - 2.0 * best->log_places) best = form;
+    }
+    return best;
+  }
+  [[nodiscard]] bool was_refused(const Proposal& form) const {
+    return std::ranges::any_of(refused_forms_, [&](const EffectPtr& e) {
+      return e->name == form.effect->name && e->site == form.effect->site && e->axes == form.effect->axes &&
+             e->relation == form.effect->relation;
+    });
+  }
+
+  /// Its coefficients are found together with those that are taken already.
+  bool try_out(const Proposal& form) {
+    const double before = run_->log_likelihood();
+    const std::vector<Taken> taken = taken_;
+    const std::vector<Finding> findings = result_.findings;
+    suggested_.push_back(form.effect);
+    const std::unique_ptr<MissionRun> start = std::move(run_);
+    run_from(*start);
+    const auto first = static_cast<Eigen::Index>(run_->hypotheses().size()) - static_cast<Eigen::Index>(form.effect->axes.size());
+    for (Eigen::Index i = first; i < run_->hypotheses().size(); ++i)
+      take({.hypothesis = i, .from = {}, .likelihood_ratio = form.likelihood_ratio, .p_value = form.p_value});
+    static_cast<void>(follow(examined()));
+    run();
+    const double gained = run_->log_likelihood() - before;
+    if (gained > form.log_places - std::log(kFormFalseAlarm)) {
+      Finding& found = result_.findings[taken.size()];
+      found.delta_log_likelihood = gained;
+      if (!form.effect->relation.empty()) found.stability = form.stability;
+      return true;
+    }
+    refused_forms_.push_back(form.effect);
+    suggested_.pop_back();
+    taken_ = taken;
+    result_.findings = findings;
+    run_from(*start);
+    return false;
+  }
+
   [[nodiscard]] const Suspicion* likeliest() const {
     const Suspicion* best = nullptr;
     for (const Suspicion& s : suspicions_.all)
-      if (std::ranges::find(refused_, s.hypothesis) == refused_.end() && s.p_value < options_.false_alarm_probability &&
+      if (std::ranges::find(refused_, s.hypothesis) == refused_.end() && s.p_value < of_catalogue() &&
           (best == nullptr || s.log_bayes > best->log_bayes))
         best = &s;
     return best;
@@ -208,7 +342,8 @@ class Search {
                     .value = s.estimate,
                     .sd = s.sd,
                     .p_value = s.p_value,
-                    .alternatives = {}};
+                    .alternatives = {},
+                    .stability = {}};
     for (const Suspicion& other : suspicions_.all)
       if (other.hypothesis != s.hypothesis &&
           (s.log_bayes - other.log_bayes < kLogOdds || s.likelihood_ratio - other.likelihood_ratio < 2.0 * kLogOdds))
@@ -235,6 +370,24 @@ class Search {
         i = 0;
         j = 0;
       }
+  }
+
+  /// Sine and cosine become amplitude and phase.
+  void join_quadratures() {
+    std::vector<Finding>& all = result_.findings;
+    for (std::size_t i = 0; i + 1 < all.size(); ++i) {
+      const Effect& effect = *all[i].hypothesis.effect;
+      if (effect.name != "harmonic_disturbance" || all[i + 1].hypothesis.effect != &effect) continue;
+      Finding& sine = all[i];
+      const Finding& cosine = all[i + 1];
+      const double phase = effect.fixed[1].value + std::atan2(cosine.value, sine.value);
+      const int axis = effect.axes.front().front() - 'x';
+      result_.suggested.push_back(harmonic_disturbance(effect.site, axis, effect.fixed[0].value, phase));
+      sine.hypothesis.effect = result_.suggested.back().get();
+      sine.value = std::hypot(sine.value, cosine.value);
+      sine.sd = std::max(sine.sd, cosine.sd);
+      all.erase(all.begin() + static_cast<std::ptrdiff_t>(i) + 1);
+    }
   }
 
   void describe_what_was_not_found() {
@@ -269,6 +422,11 @@ class Search {
   std::optional<FittedNoise> noise_;
   std::optional<estimate::NoiseFit> last_fit_;
   bool noise_tried_ = false;
+  std::vector<EffectPtr> suggested_;
+  std::vector<EffectPtr> refused_forms_;
+  std::vector<AddedNoise> added_;
+  std::vector<AddedNoise> refused_noise_;
+  std::vector<NoiseFinding> random_effects_;
   Diagnosis result_;
 };
 

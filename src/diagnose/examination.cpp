@@ -14,16 +14,63 @@ namespace {
 // An effect of which less is known than three times what is plausible cannot be told from nothing there.
 constexpr double kBlind = 3.0;
 
+/// A disturbance within an interval is a bias that steps at its beginning and back at its end.
+class DisturbanceRecorder {
+ public:
+  DisturbanceRecorder(const Hypotheses& hypotheses, const ExaminationOptions& options, std::size_t intervals,
+                      Disturbances& into)
+      : rows_(1 + std::min(options.draws, options.draws_of_disturbances)), into_(into) {
+    for (std::size_t axis = 0; axis < kAxes; ++axis) {
+      const Site site = axis < 3 ? Site::kGyro : Site::kAccel;
+      const auto step = std::ranges::find_if(hypotheses.all(), [&](const Hypothesis& h) {
+        return h.effect->name == "bias_step" && h.effect->site == site && h.axis == static_cast<Eigen::Index>(axis % 3);
+      });
+      step_[axis] = step - hypotheses.all().begin();
+      into_.score[axis].resize(rows_, static_cast<Eigen::Index>(intervals));
+      behind_[axis] = Eigen::VectorXd::Zero(rows_);
+    }
+    into_.t.resize(intervals);
+    into_.length.resize(intervals);
+    left_ = intervals;
+  }
+  void add(const estimate::Evidence& e) {
+    const bool is_interval = end_.has_value() && left_ > 0;
+    if (is_interval) --left_;
+    for (std::size_t axis = 0; axis < kAxes; ++axis) {
+      Eigen::VectorXd now(rows_);
+      now << -e.r_effects(step_[axis]), -e.null_r_effects.row(step_[axis]).head(rows_ - 1).transpose();
+      if (is_interval)
+        into_.score[axis].col(static_cast<Eigen::Index>(left_)) = (now - behind_[axis]).cast<float>();
+      behind_[axis] = std::move(now);
+    }
+    if (is_interval) {
+      into_.t[left_] = e.t;
+      into_.length[left_] = *end_ - e.t;
+    }
+    end_ = e.t;
+  }
+
+ private:
+  Eigen::Index rows_;
+  Disturbances& into_;
+  std::array<Eigen::Index, kAxes> step_{};
+  std::array<Eigen::VectorXd, kAxes> behind_;
+  std::optional<geo::GpsTime> end_;
+  std::size_t left_ = 0;
+};
+
 class Recorder {
  public:
-  Recorder(const Hypotheses& hypotheses, Eigen::Index draws, Examination& into) : hypotheses_(hypotheses), into_(into) {
+  Recorder(const Hypotheses& hypotheses, const ExaminationOptions& options, std::size_t intervals, Examination& into)
+      : hypotheses_(hypotheses), into_(into), disturbances_(hypotheses, options, intervals, into.disturbances) {
     for (Eigen::Index i = 0; i < hypotheses.size(); ++i)
-      if (hypotheses[i].begins_at_some_time()) into.tracks.push_back({i, {}, {}, {}, Eigen::VectorXd::Zero(draws)});
+      if (hypotheses[i].begins_at_some_time()) into.tracks.push_back({i, {}, {}, {}, Eigen::VectorXd::Zero(options.draws)});
   }
   void add(const estimate::Evidence& e) {
     into_.score = -e.r_effects;
     into_.information = e.N_effects;
     into_.null_score = -e.null_r_effects;
+    disturbances_.add(e);
     for (Examination::Track& track : into_.tracks) {
       const Eigen::Index i = track.hypothesis;
       const double information = e.N_effects(i, i);
@@ -46,6 +93,7 @@ class Recorder {
  private:
   const Hypotheses& hypotheses_;
   Examination& into_;
+  DisturbanceRecorder disturbances_;
 };
 
 /// log of the ratio of the likelihoods of c ~ N(0, plausible^2) and c = 0.
@@ -95,12 +143,6 @@ bool is_seen(const Hypothesis& h, double left, double all) {
   return left > kSame * all && left * plausible * plausible > 1.0;
 }
 
-double median(Eigen::VectorXd values) {
-  const auto middle = values.begin() + values.size() / 2;
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
-
 Suspicion best_of(const Examination::Track& track, const Hypothesis& h) {
   constexpr double kEpisode = 10.0;  // s; onsets closer than this are hardly different hypotheses
   std::size_t best = 0;
@@ -132,7 +174,7 @@ Examination examine(const estimate::Mission& mission, const estimate::StateLayou
                     const Hypotheses& hypotheses, const ExaminationOptions& options,
                     const std::function<void(double)>& progress) {
   Examination result;
-  Recorder recorder(hypotheses, options.draws, result);
+  Recorder recorder(hypotheses, options, knots.size() > 0 ? knots.size() - 1 : 0, result);
   simulate::Normal normal(simulate::stream_seed(options.seed, {1}));
   estimate::EffectPassOptions pass;
   pass.draws = options.draws;
@@ -143,6 +185,13 @@ Examination examine(const estimate::Mission& mission, const estimate::StateLayou
   estimate::effect_pass(mission, layout, knots, hypotheses, pass, [&](const estimate::Evidence& e) { recorder.add(e); });
   recorder.finish();
   return result;
+}
+
+LargestByChance LargestByChance::of(std::vector<double> largest) {
+  if (largest.empty()) return {};
+  const auto middle = largest.begin() + static_cast<std::ptrdiff_t>(largest.size() / 2);
+  std::ranges::nth_element(largest, middle);
+  return {std::max(1.0, std::log(0.5) / std::log1p(-noise::chi2_survival(1.0, *middle)))};
 }
 
 double LargestByChance::p_value(double likelihood_ratio) const {
@@ -177,10 +226,7 @@ Suspicions suspicions(const Examination& examination, const Hypotheses& hypothes
     largest = largest.cwiseMax(track.null_largest);
     result.all.push_back(best_of(track, hypotheses[track.hypothesis]));
   }
-  if (largest.size() > 0 && !result.all.empty()) {
-    const double survival = noise::chi2_survival(1.0, median(largest));
-    result.chance.count = std::max(1.0, std::log(0.5) / std::log1p(-survival));
-  }
+  if (!result.all.empty()) result.chance = LargestByChance::of({largest.begin(), largest.end()});
   for (Suspicion& s : result.all) s.p_value = result.chance.p_value(s.likelihood_ratio);
   const Eigen::VectorXd scale = examination.information.diagonal().unaryExpr(
       [](double information) { return information > 0.0 ? 1.0 / std::sqrt(information) : 0.0; });

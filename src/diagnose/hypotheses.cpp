@@ -83,6 +83,7 @@ Signals SignalTable::at(std::size_t sample, const Eigen::Vector3d& omega_b, cons
     s.temperature_rate = temperature_rate_[sample];
   }
   s.elapsed = nav.t - samples.front().t;
+  s.speed = nav.v_eb_e.norm();
   s.C_e_s = C_b_s_ * nav.q_b_e.toRotationMatrix().transpose();
   s.C_n_e = geo::C_n_e(geo::geodetic_from_ecef(nav.r_eb_e));
   return s;
@@ -100,25 +101,30 @@ Eigen::Vector3d SignalTable::mean_force_b(std::size_t sample) const {
   return time > 0.0 ? Eigen::Vector3d(sum / time) : Eigen::Vector3d::Zero();
 }
 
-Hypotheses::Hypotheses(const estimate::Mission& mission, Grade grade)
+Hypotheses::Hypotheses(const estimate::Mission& mission, Grade grade, const std::vector<EffectPtr>& suggested)
     : mission_(mission), signals_(mission.imu, mission.C_s_b) {
-  for (const Effect& effect : catalogue()) {
-    if (effect.needs_reference || (effect.needs_temperature && !signals_.has_temperature())) continue;
+  const auto add = [&](const Effect& effect) {
+    if (effect.needs_reference || (effect.needs_temperature && !signals_.has_temperature())) return;
     const auto axes = static_cast<Eigen::Index>(effect.axes.size());
     parts_.push_back({&effect, size(), axes});
     for (Eigen::Index axis = 0; axis < axes; ++axis)
       all_.push_back({&effect, axis, effect.plausible[static_cast<std::size_t>(grade)]});
-  }
+  };
+  for (const Effect& effect : catalogue()) add(effect);
+  for (const EffectPtr& effect : suggested) add(*effect);
+}
+
+Signals Hypotheses::signals(const estimate::SampleView& sample) const {
+  return signals_.at(std::min(sample.index, mission_.imu.samples.size() - 1), sample.omega_b, sample.f_b, sample.nav);
 }
 
 void Hypotheses::add_sensor_errors(const estimate::SampleView& sample, Eigen::Matrix3Xd& gyro_b,
                                    Eigen::Matrix3Xd& accel_b) const {
-  const Signals signals =
-      signals_.at(std::min(sample.index, mission_.imu.samples.size() - 1), sample.omega_b, sample.f_b, sample.nav);
+  const Signals at = signals(sample);
   for (const Part& part : parts_) {
     if (part.effect->sensors) {
       SensorErrors errors{gyro_b.middleCols(part.first, part.count), accel_b.middleCols(part.first, part.count)};
-      part.effect->sensors(signals, errors);
+      part.effect->sensors(at, errors);
     }
   }
   gyro_b = mission_.C_s_b * gyro_b;

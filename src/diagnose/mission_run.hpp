@@ -11,7 +11,7 @@ namespace coast::diagnose {
 /// Everything of one run. Stays where it is: the hypotheses refer to its mission.
 class MissionRun {
  public:
-  MissionRun(MissionInput input, Grade grade, const study::Progress& progress);
+  MissionRun(MissionInput input, Grade grade, const std::vector<EffectPtr>& suggested, const study::Progress& progress);
 
   [[nodiscard]] const study::PreparedMission& prepared() const { return mission_; }
   [[nodiscard]] const estimate::Mission& mission() const { return mission_.mission(); }
@@ -21,6 +21,18 @@ class MissionRun {
   [[nodiscard]] const std::vector<record::NavState>& path() const { return path_; }
   [[nodiscard]] double log_likelihood() const { return solution_.forward.log_likelihood; }
   [[nodiscard]] Fit fit() const;
+  /// take(sample, its end, signals along the smoothed trajectory), of every sample that the trajectory covers.
+  template <typename Take>
+  void for_each_sample(const Take& take) const {
+    const std::vector<record::ImuSample>& samples = mission().imu.samples;
+    auto at = path_.begin();
+    for (std::size_t i = 0; i < samples.size() && at != path_.end(); ++i) {
+      const record::ImuSample& sample = samples[i];
+      while (at != path_.end() && at->t < sample.t) ++at;
+      if (at == path_.end() || sample.t < path_.front().t) continue;
+      take(i, sample.t, hypotheses_.signals({i, sample.dtheta / sample.dt, sample.dv / sample.dt, *at}));
+    }
+  }
 
  private:
   study::PreparedMission mission_;

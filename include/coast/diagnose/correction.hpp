@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "coast/diagnose/hypotheses.hpp"
+#include "coast/diagnose/noise_effect.hpp"
 #include "coast/study/mission.hpp"
 
 namespace coast::diagnose {
@@ -20,11 +21,13 @@ struct Taken {
 
 /// The same without a recording at hand: how files name it.
 struct NamedEffect {
-  const Effect* effect = nullptr;
+  const Effect* effect = nullptr;      ///< of the catalogue, or `suggested`; null: a random one
+  const NoiseEffect* noise = nullptr;  ///< is added to the noise level; `value` is the root of its variance
   Eigen::Index axis = 0;
   double value = 0.0;
   std::optional<double> from_s;  ///< seconds of week
   std::optional<double> to_s;
+  EffectPtr suggested = {};
 };
 
 /// What is filtered.

@@ -7,6 +7,7 @@
 
 #include "coast/diagnose/correction.hpp"
 #include "coast/diagnose/examination.hpp"
+#include "coast/diagnose/noise_effect.hpp"
 
 namespace coast::diagnose {
 
@@ -28,6 +29,7 @@ struct Finding {
   double delta_log_likelihood = 0.0;  ///< realised: runs with and without it, all others as they are
   double p_value = 1.0;
   std::vector<Alternative> alternatives;
+  std::optional<double> stability;  ///< of a relation without a name: share of random halves of the mission that show it
 };
 
 /// What would have been found of an effect that was not.
@@ -42,7 +44,7 @@ struct NotObservable {
 
 /// Noise that differs from what is stated.
 struct NoiseFinding {
-  std::string name;  ///< of the catalogue: gnss_sd_optimistic, gnss_correlated_error, or imu_white_noise
+  std::string name;  ///< gnss_sd_optimistic, gnss_correlated_error, imu_white_noise, or a random effect's
   std::string sensor;
   std::string axis;
   std::string parameter;
@@ -51,6 +53,14 @@ struct NoiseFinding {
   double sd = 0.0;
   double delta_log_likelihood = 0.0;
   double p_value = 1.0;
+  double time_s = 0.0;                  ///< correlation time; 0: it has none
+  const NoiseEffect* effect = nullptr;  ///< of the table of random effects; null: of the noise that is stated already
+  struct Alternative {
+    const NoiseEffect* effect = nullptr;
+    double time_s = 0.0;
+    double log_odds = 0.0;  ///< for what was found against this one
+  };
+  std::vector<Alternative> alternatives = {};
 };
 
 /// Fit of one run.
@@ -72,7 +82,8 @@ struct Diagnosis {
   std::size_t runs = 0;
   std::vector<estimate::InnovationRecord> innovations_before;
   std::vector<estimate::InnovationRecord> innovations_after;
-  MissionInput modelled;  ///< with what was found taken out
+  MissionInput modelled;             ///< with what was found taken out
+  std::vector<EffectPtr> suggested;  ///< effects found that are not of the catalogue
 };
 
 struct DiagnosisOptions {

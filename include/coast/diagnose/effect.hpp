@@ -29,6 +29,7 @@ struct Signals {
   double temperature = 0.0;       ///< against its mean over the recording, K
   double temperature_rate = 0.0;  ///< K/s
   double elapsed = 0.0;           ///< since the start of the mission, s
+  double speed = 0.0;             ///< over ground, m/s
   Eigen::Matrix3d C_e_s;          ///< e to sensor axes
   Eigen::Matrix3d C_n_e;          ///< at the position
 };
@@ -55,6 +56,13 @@ struct SensorErrors {
   Columns accel;
 };
 
+/// What belongs to an effect and is no coefficient: the frequency of an oscillation.
+struct FixedParameter {
+  std::string_view name;
+  double value = 0.0;
+  std::string_view unit;
+};
+
 /// One effect: an equation, linear in some coefficients (`axes`) that are judged one by one. measured = true + error.
 struct Effect {
   enum class Begins { kWithTheMission, kAtSomeTime };
@@ -79,6 +87,8 @@ struct Effect {
   std::function<void(const FixSignals&, Columns)> velocity = {};
   /// How the configuration takes coefficients exactly; where absent, they are taken out of the recordings.
   std::function<void(study::Setup&, const Eigen::VectorXd&)> configure = {};
+  std::vector<FixedParameter> fixed = {};
+  std::string_view relation{};  ///< of an effect that has no name: the product of signals that it is
 };
 
 /// Every effect. A new one is a file in src/diagnose/effects and a line in catalogue.cpp.

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "coast/diagnose/hypotheses.hpp"
+#include "coast/diagnose/noise_effect.hpp"
 #include "coast/study/solution.hpp"
 
 namespace coast::diagnose {
@@ -26,10 +27,12 @@ struct Examination {
     Eigen::VectorXd null_largest;  ///< likelihood ratio, the largest of each draw over all instants
   };
   std::vector<Track> tracks;
+  Disturbances disturbances;
 };
 
 struct ExaminationOptions {
   Eigen::Index draws = 400;
+  Eigen::Index draws_of_disturbances = 200;  ///< of these, as many are kept interval by interval
   std::uint64_t seed = 1;
 };
 
@@ -54,6 +57,8 @@ struct Suspicion {
 /// largest of `count` independent squares of standard normal numbers, the count fitted to the median of the draws.
 struct LargestByChance {
   double count = 1.0;
+  /// @param largest  likelihood ratio of each draw
+  [[nodiscard]] static LargestByChance of(std::vector<double> largest);
   [[nodiscard]] double p_value(double likelihood_ratio) const;
   /// Likelihood ratio that is exceeded with this probability.
   [[nodiscard]] double quantile(double probability) const;

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "coast/diagnose/effect.hpp"
+#include "coast/diagnose/suggested.hpp"
 #include "coast/estimate/effect_pass.hpp"
 
 namespace coast::diagnose {
@@ -42,11 +43,14 @@ class SignalTable {
 class Hypotheses : public estimate::Effects {
  public:
   /// Those that need what the recording does not have are left out. @param mission  must outlive the set
-  Hypotheses(const estimate::Mission& mission, Grade grade);
+  /// @param suggested  behind the catalogue's; must outlive the set
+  Hypotheses(const estimate::Mission& mission, Grade grade, const std::vector<EffectPtr>& suggested);
 
   [[nodiscard]] Eigen::Index size() const override { return static_cast<Eigen::Index>(all_.size()); }
   [[nodiscard]] const std::vector<Hypothesis>& all() const { return all_; }
   [[nodiscard]] const Hypothesis& operator[](Eigen::Index i) const { return all_[static_cast<std::size_t>(i)]; }
+  /// What the sensor axes see at a sample.
+  [[nodiscard]] Signals signals(const estimate::SampleView& sample) const;
   void add_sensor_errors(const estimate::SampleView& sample, Eigen::Matrix3Xd& gyro_b,
                          Eigen::Matrix3Xd& accel_b) const override;
   void add_measurement_errors(const estimate::MeasurementView& measurement, Eigen::MatrixXd& D) const override;

@@ -5,14 +5,20 @@ A function takes the true signals of a sample and adds to what is measured: `s.w
 Axes are 0, 1, 2; a pair is (response, cause).
 """
 
+import math
+
 X, Y, Z = 0, 1, 2
 NAMES = "xyz"
 
 
 class Effect:
-    def __init__(self, name, sensor, axes, unit, probe, sample=None, fix=None, config=None, onset=False, temperature=False):
+    """`probe`: a size that is small, for sensitivities; an effect without one has a `typical` size for an IMU (its grade's noise) instead.
+    `last`: acts when the noise is in. `relation`: for effects without a name."""
+
+    def __init__(self, name, sensor, axes, unit, probe=None, sample=None, fix=None, onset=False, typical=None, last=None, relation=None):
         self.name, self.sensor, self.axes, self.unit, self.probe = name, sensor, axes, unit, probe
-        self.sample, self.fix, self.config, self.onset, self.temperature = sample, fix, config, onset, temperature
+        self.sample, self.fix, self.onset = sample, fix, onset
+        self.typical, self.last, self.relation = typical, last, relation
 
 
 def label(axis):
@@ -118,6 +124,78 @@ def deflection(s, axis, c):  # gravity is larger by c along an axis of the plane
         s.out_f[i] -= c * s.plane_axes[axis][i]
 
 
+def oscillation(s, axis, c):
+    s.out_w[axis] += c * math.sin(2.0 * math.pi * s.frequency * s.t)
+
+
+def accel_oscillation(s, axis, c):
+    s.out_f[axis] += c * math.sin(2.0 * math.pi * s.frequency * s.t)
+
+
+# What no catalogue has.
+def gyro_hears_speed(s, axis, c):
+    s.out_w[axis] += c * s.speed
+
+
+def gyro_hears_turning_force(s, axis, c):
+    s.out_w[axis] += c * s.w[Z] * s.f[X]
+
+
+def accel_hears_speed_squared(s, axis, c):
+    s.out_f[axis] += c * s.speed * s.speed
+
+
+def gyro_scale_grows_with_temperature(s, axis, c):
+    s.out_w[axis] += c * s.w[axis] * s.temperature
+
+
+class Wandering:
+    """A Gauss-Markov process of unit variance for each of some correlation times, added up; starts anew with every recording."""
+
+    def __init__(self, gyro, times):
+        self.gyro, self.times = gyro, times
+
+    def __call__(self, s, axis, c):
+        times = self.times or (s.correlation_time,)
+        if s.t < 1.5 * s.dt:
+            s.wandering = [s.draw.gauss(0.0, 1.0) for _ in times]
+        for i, time in enumerate(times):
+            phi = math.exp(-s.dt / time)
+            s.wandering[i] = phi * s.wandering[i] + math.sqrt(1.0 - phi * phi) * s.draw.gauss(0.0, 1.0)
+        (s.out_w if self.gyro else s.out_f)[axis] += c * sum(s.wandering)
+
+
+OCTAVES = tuple(2.0 ** k for k in range(0, 11))
+
+
+def gyro_noise_of_turning(s, axis, c):
+    s.out_w[axis] += c * math.sqrt((s.w[X] ** 2 + s.w[Y] ** 2 + s.w[Z] ** 2) / s.dt) * s.draw.gauss(0.0, 1.0)
+
+
+def gyro_clips(s, axis, c):
+    s.out_w[axis] = max(-c, min(c, s.out_w[axis]))
+
+
+def gyro_rounds(s, axis, c):
+    s.out_w[axis] = c * round(s.out_w[axis] / c)
+
+
+def accel_rounds(s, axis, c):
+    s.out_f[axis] = c * round(s.out_f[axis] / c)
+
+
+def fix_noise(fix, axis, c):
+    for i in SINGLE:
+        fix.ned[i] += math.sqrt((1.0 + c) ** 2 - 1.0) * fix.sd[i] * fix.draw.gauss(0.0, 1.0)
+
+
+def fix_wanders(fix, axis, c):
+    phi = math.exp(-fix.dt / 30.0)
+    for i in SINGLE:
+        fix.wandering[i] = phi * fix.wandering[i] + math.sqrt(1.0 - phi * phi) * fix.draw.gauss(0.0, 1.0)
+        fix.ned[i] += c * (2.0 if i == Z else 1.0) * fix.wandering[i]
+
+
 EFFECTS = [
     Effect("lever_arm_error", "antenna", SINGLE, "m", 0.01, fix=antenna_moves),
     Effect("gnss_time_offset", "clock", [None], "s", 1e-3, fix=time_shift),
@@ -129,8 +207,8 @@ EFFECTS = [
     Effect("accel_nonlinearity_quadratic", "accel", SINGLE, "1/(m/s^2)", 1e-5, sample=quadratic),
     Effect("accel_sign_asymmetric_scale", "accel", SINGLE, "1", 1e-4, sample=asymmetric),
     Effect("accel_size_effect", "accel", ALL, "m", 1e-2, sample=size),
-    Effect("gyro_temperature_bias", "gyro", SINGLE, "rad/s/K", 1e-7, sample=gyro_temperature, temperature=True),
-    Effect("accel_temperature_bias", "accel", SINGLE, "m/s^2/K", 1e-5, sample=accel_temperature, temperature=True),
+    Effect("gyro_temperature_bias", "gyro", SINGLE, "rad/s/K", 1e-7, sample=gyro_temperature),
+    Effect("accel_temperature_bias", "accel", SINGLE, "m/s^2/K", 1e-5, sample=accel_temperature),
     Effect("rate_ramp", "gyro", SINGLE, "rad/s^2", 1e-9, sample=gyro_ramp),
     Effect("bias_step", "gyro", SINGLE, "rad/s", 1e-5, sample=gyro_bias, onset=True),
     Effect("bias_step", "accel", SINGLE, "m/s^2", 1e-4, sample=accel_bias, onset=True),
@@ -141,3 +219,27 @@ EFFECTS = [
     Effect("body_flexure", "antenna", [X, Y], "s^2", 1e-3, fix=flexure),
     Effect("gravity_disturbance", "gravity", SINGLE, "m/s^2", 1e-4, sample=deflection),
 ]
+
+# Sizes of 1: the density at frequency zero is that of the white noise (gyro N, accelerometer M, of the grade), and so on.
+NOISE = [
+    Effect("extra_gauss_markov_bias", "gyro", SINGLE, "rad/s", sample=Wandering(True, None), typical=lambda n: n.gyro / math.sqrt(30.0)),
+    Effect("extra_gauss_markov_bias", "accel", SINGLE, "m/s^2", sample=Wandering(False, None), typical=lambda n: n.accel / math.sqrt(30.0)),
+    Effect("flicker_noise", "gyro", SINGLE, "rad/s", sample=Wandering(True, OCTAVES), typical=lambda n: n.gyro / math.sqrt(100.0)),
+    Effect("dynamics_dependent_noise", "gyro", SINGLE, "sqrt(s)", last=gyro_noise_of_turning, typical=lambda n: n.gyro / 0.3),
+    Effect("saturation", "gyro", [Z], "rad/s", last=gyro_clips, typical=lambda n: 0.5),
+    Effect("quantisation", "gyro", SINGLE, "rad/s", last=gyro_rounds, typical=lambda n: n.gyro_sample),
+    Effect("quantisation", "accel", SINGLE, "m/s^2", last=accel_rounds, typical=lambda n: n.accel_sample),
+    Effect("gnss_sd_optimistic", "gnss", [None], "1", fix=fix_noise, typical=lambda n: 0.1),
+    Effect("gnss_correlated_error", "gnss", [None], "m", fix=fix_wanders, typical=lambda n: 0.003),
+    Effect("harmonic_disturbance", "gyro", SINGLE, "rad/s", 1e-5, sample=oscillation),
+    Effect("harmonic_disturbance", "accel", SINGLE, "m/s^2", 1e-3, sample=accel_oscillation),
+]
+
+RELATIONS = [
+    Effect("unknown", "gyro", SINGLE, "rad/s/(m/s)", 1e-6, sample=gyro_hears_speed, relation="speed"),
+    Effect("unknown", "gyro", SINGLE, "s/(m/s)", 1e-5, sample=gyro_hears_turning_force, relation="omega_z*f_x"),
+    Effect("unknown", "accel", SINGLE, "1/m", 1e-6, sample=accel_hears_speed_squared, relation="speed*speed"),
+    Effect("unknown", "gyro", SINGLE, "1/K", 1e-5, sample=gyro_scale_grows_with_temperature, relation="omega*temperature"),
+]
+
+GROUPS = {"named": EFFECTS, "noise": NOISE, "relation": RELATIONS}

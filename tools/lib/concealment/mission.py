@@ -28,6 +28,15 @@ class Case:
         self.motion = Motion(self.kind, duration, STATIC_S, draw)
 
 
+class Noise:
+    """White noise of an IMU's grade: densities, and what they are of a sample."""
+
+    def __init__(self, grade):
+        arw, _, vrw, _ = GRADES[grade]
+        self.gyro, self.accel = math.radians(arw) / 60.0, vrw * 9.80665e-6
+        self.gyro_sample, self.accel_sample = self.gyro * math.sqrt(RATE_HZ), self.accel * math.sqrt(RATE_HZ)
+
+
 class Sample:
     pass
 
@@ -82,13 +91,15 @@ def simpson(a, b, c):
 
 def imu_rows(truth, case, concealed, noisy=True):
     """time, measured rates, forces, temperature"""
-    arw, gyro_bias, vrw, accel_bias = GRADES[case.grade]
+    _, gyro_bias, _, accel_bias = GRADES[case.grade]
     draw = random.Random(f"imu {case.seed}")
-    sd_w = math.radians(arw) / 60.0 * math.sqrt(RATE_HZ)
-    sd_f = vrw * 9.80665e-6 * math.sqrt(RATE_HZ)
+    sd_w, sd_f = Noise(case.grade).gyro_sample, Noise(case.grade).accel_sample
     bias_w = [draw.gauss(0.0, math.radians(gyro_bias) / 3600.0) for _ in NAMES]
     bias_f = [draw.gauss(0.0, accel_bias * 9.80665e-3) for _ in NAMES]
     s = Sample()
+    s.dt, s.draw = 1.0 / RATE_HZ, random.Random(f"effect on imu {case.seed}")
+    chosen = random.Random(f"times {case.seed}")
+    s.frequency, s.correlation_time = math.exp(chosen.uniform(math.log(0.02), math.log(0.5))), chosen.choice((10.0, 30.0, 100.0))
     n = (len(truth.states) - 1) // 2
     warm = random.Random(f"temperature {case.seed}").uniform(4.0, 12.0)
     for k in range(n):
@@ -97,6 +108,7 @@ def imu_rows(truth, case, concealed, noisy=True):
         s.w, s.f = simpson(a[4], b[4], c[4]), simpson(a[5], b[5], c[5])
         s.alpha = [(y - x) * RATE_HZ for x, y in zip(a[4], c[4])]
         s.plane_axes = b[3]
+        s.speed = math.sqrt(sum(v * v for v in b[2]))
         s.acceleration_b = earth.transposed_times(b[3], b[6])
         s.temperature = warm * (1.0 - math.exp(-s.t / 200.0)) + 2.0 * math.sin(s.t / 90.0)
         s.out_w, s.out_f = list(s.w), list(s.f)
@@ -107,6 +119,9 @@ def imu_rows(truth, case, concealed, noisy=True):
             for i in range(3):
                 s.out_w[i] += bias_w[i] + draw.gauss(0.0, sd_w)
                 s.out_f[i] += bias_f[i] + draw.gauss(0.0, sd_f)
+        for effect, axis, size, onset in concealed:
+            if effect.last and s.t > onset:
+                effect.last(s, axis, size)
         yield START_SOW + s.t, s.out_w, s.out_f, 25.0 + s.temperature
 
 
@@ -119,6 +134,8 @@ def fix_rows(truth, case, concealed):
     draw = random.Random(f"gnss {case.seed}")
     step = 2.0 * RATE_HZ
     fix = Fix()
+    fix.dt, fix.sd, fix.draw = 1.0 / GNSS_HZ, GNSS_SD, random.Random(f"effect on gnss {case.seed}")
+    fix.wandering = [fix.draw.gauss(0.0, 1.0) for _ in NAMES]
     for k in range(int(case.duration * GNSS_HZ) - 1):
         fix.elapsed = (k + 0.37) / GNSS_HZ
         fix.valid_at, fix.lever_arm, fix.ned, fix.clock_rate = fix.elapsed, list(LEVER_ARM), [0.0, 0.0, 0.0], 1.0
@@ -178,5 +195,6 @@ gnss: {{file: gnss.csv, format: csv, gps_week: {WEEK}, time_offset_s: 0}}
 def describe(case, concealed):
     return {"seed": case.seed, "kind": case.kind, "grade": case.grade, "duration_s": case.duration,
             "effects": [{"name": e.name, "sensor": e.sensor, "axis": label(a) if e.name not in ("gnss_wrong_fix", "gravity_disturbance")
-                         else "ned"[a], "value": size, "unit": e.unit, "t_start_s": START_SOW + onset if e.onset else None}
+                         else "ned"[a], "value": size, "unit": e.unit, "t_start_s": START_SOW + onset if e.onset else None,
+                         "relation": e.relation}
                         for e, a, size, onset in concealed]}
