@@ -43,7 +43,7 @@ std::string entry(const diagnose::Finding& f) {
 
 bool changes_error_model(const diagnose::Diagnosis& d) {
   for (const diagnose::NoiseFinding& f : d.noise)
-    if (f.sensor != "gnss" && (f.effect == nullptr || !f.effect->level)) return true;
+    if (f.sensor != "gnss" && f.place != diagnose::NoiseFinding::Place::kEffects) return true;
   return false;
 }
 
@@ -56,7 +56,7 @@ std::string diagnosed_yaml(const std::string& resolved, const diagnose::Diagnosi
   for (const diagnose::Finding& f : d.findings) entries += entry(f);
   for (const diagnose::NoiseFinding& f : d.noise) {
     of_gnss = of_gnss || f.sensor == "gnss";
-    if (f.effect != nullptr && f.effect->level)
+    if (f.place == diagnose::NoiseFinding::Place::kEffects)
       entries += fmt::format("  - {{name: {}, sensor: {}, axis: {}, value: {:.17g}}}  # +- {:.2g} {}\n", f.name, f.sensor,
                              f.axis, f.value, f.sd, f.unit);
   }

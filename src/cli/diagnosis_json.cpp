@@ -24,6 +24,23 @@ Json parameter_json(std::string_view name, double value, std::string_view unit) 
   return {{"name", name}, {"value", value}, {"unit", unit}};
 }
 
+Json alternative_json(const diagnose::Alternative& a, std::string_view separating_manoeuvre) {
+  return {{"name", a.name},
+          {"sensor", a.sensor},
+          {"axis", a.axis},
+          {"log_odds", a.log_odds},
+          {"separating_manoeuvre", separating_manoeuvre}};
+}
+
+std::string other_readings(const std::vector<diagnose::Alternative>& alternatives, std::string_view separating_manoeuvre) {
+  if (alternatives.empty()) return {};
+  std::string text = " It could also be";
+  for (std::size_t i = 0; i < std::min<std::size_t>(3, alternatives.size()); ++i)
+    text += fmt::format("{} {}{}{} (1 : {:.0f})", i == 0 ? "" : ",", alternatives[i].name,
+                        alternatives[i].axis.empty() ? "" : " ", alternatives[i].axis, std::exp(alternatives[i].log_odds));
+  return text + fmt::format(". What would tell: {}", separating_manoeuvre);
+}
+
 Json finding_json(const diagnose::Finding& f, double start_s, double end_s) {
   const diagnose::Effect& effect = *f.hypothesis.effect;
   Json j = hypothesis_json(f.hypothesis);
@@ -40,10 +57,7 @@ Json finding_json(const diagnose::Finding& f, double start_s, double end_s) {
   j["explanation"] = explanation(f);
   j["confounded_with"] = Json::array();
   for (const diagnose::Alternative& a : f.alternatives) {
-    Json other = hypothesis_json(a.hypothesis);
-    other["log_odds"] = a.log_odds;
-    other["separating_manoeuvre"] = effect.separating_manoeuvre;
-    j["confounded_with"].push_back(other);
+    j["confounded_with"].push_back(alternative_json(a, effect.separating_manoeuvre));
   }
   return j;
 }
@@ -56,12 +70,8 @@ Json noise_json(const diagnose::NoiseFinding& f, double start_s, double end_s) {
   j["p_value"] = f.p_value;
   j["explanation"] = explanation(f);
   j["confounded_with"] = Json::array();
-  for (const diagnose::NoiseFinding::Alternative& a : f.alternatives)
-    j["confounded_with"].push_back({{"name", a.effect->name},
-                                    {"sensor", f.sensor},
-                                    {"axis", f.axis},
-                                    {"log_odds", a.log_odds},
-                                    {"separating_manoeuvre", f.effect->separating_manoeuvre}});
+  for (const diagnose::Alternative& a : f.alternatives)
+    j["confounded_with"].push_back(alternative_json(a, f.separating_manoeuvre));
   return j;
 }
 
@@ -71,25 +81,16 @@ std::string explanation(const diagnose::Finding& f) {
   const diagnose::Effect& effect = *f.hypothesis.effect;
   std::string text = fmt::format("{} {}: {} = {:.3g} +- {:.2g} {}.", effect.meaning, effect.equation, effect.parameter, f.value,
                                  f.sd, effect.unit);
-  if (!f.alternatives.empty()) {
-    text += " It could also be";
-    for (std::size_t i = 0; i < std::min<std::size_t>(3, f.alternatives.size()); ++i)
-      text += fmt::format("{} {} (1 : {:.0f})", i == 0 ? "" : ",", full_name(f.alternatives[i].hypothesis),
-                          std::exp(f.alternatives[i].log_odds));
-    text += fmt::format(". What would tell: {}", effect.separating_manoeuvre);
-  }
-  return text;
+  return text + other_readings(f.alternatives, effect.separating_manoeuvre);
 }
 
 std::string explanation(const diagnose::NoiseFinding& f) {
-  if (f.effect == nullptr) return "The innovations are likelier with this noise than with the one stated.";
-  std::string text = fmt::format("{} {}: {} = {:.3g} +- {:.2g} {}", f.effect->meaning, f.effect->equation, f.parameter, f.value,
-                                 f.sd, f.unit);
+  if (f.meaning.empty()) return "The innovations are likelier with this noise than with the one stated.";
+  std::string text = fmt::format("{} {}: {} = {:.3g}", f.meaning, f.equation, f.parameter, f.value);
+  if (f.sd > 0.0) text += fmt::format(" +- {:.2g}", f.sd);
+  text += fmt::format(" {}", f.unit);
   text += f.time_s > 0.0 ? fmt::format(", T about {:g} s.", f.time_s) : ".";
-  for (const diagnose::NoiseFinding::Alternative& a : f.alternatives)
-    text += fmt::format(" It could also be {} (1 : {:.0f}).", a.effect->name, std::exp(a.log_odds));
-  if (!f.alternatives.empty()) text += fmt::format(" What would tell: {}", f.effect->separating_manoeuvre);
-  return text;
+  return text + other_readings(f.alternatives, f.separating_manoeuvre);
 }
 
 std::string diagnosis_json(const diagnose::Diagnosis& d, const diagnose::MissionInput& input) {

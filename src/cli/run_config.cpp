@@ -125,6 +125,7 @@ diagnose::NamedEffect named_effect(const Node& item) {
   for (const diagnose::Effect& effect : diagnose::catalogue()) names.push_back(effect.name);
   for (const diagnose::NoiseEffect& effect : diagnose::noise_catalogue())
     if (effect.level) names.push_back(effect.name);
+  for (const diagnose::SampleEffect& effect : diagnose::sample_catalogue()) names.push_back(effect.name);
   const std::string_view name = names[item.at("name").choice(names)];
   const std::string sensor = item.at("sensor").text();
   const auto is_meant = [&](const auto& e) { return e.name == name && diagnose::name(e.site) == sensor; };
@@ -132,11 +133,15 @@ diagnose::NamedEffect named_effect(const Node& item) {
   one.value = item.at("value").number();
   const auto& known = diagnose::catalogue();
   const auto& random = diagnose::noise_catalogue();
+  const auto& of_samples = diagnose::sample_catalogue();
   if (const auto effect = std::ranges::find_if(known, is_meant); effect != known.end()) {
     one.effect = &*effect;
     one.axis = axis_of(effect->axes);
   } else if (const auto noise = std::ranges::find_if(random, is_meant); noise != random.end() && noise->level) {
     one.noise = &*noise;
+    one.axis = axis_of(diagnose::three_axes());
+  } else if (const auto sample = std::ranges::find_if(of_samples, is_meant); sample != of_samples.end()) {
+    one.sample = &*sample;
     one.axis = axis_of(diagnose::three_axes());
   } else if ((name == "harmonic_disturbance" || name == "unknown") && (sensor == "gyro" || sensor == "accel")) {
     const diagnose::Site site = sensor == "gyro" ? diagnose::Site::kGyro : diagnose::Site::kAccel;

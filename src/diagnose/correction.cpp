@@ -105,7 +105,10 @@ MissionInput without(const std::vector<Taken>& taken, const MissionInput& input,
   return result;
 }
 
-MissionInput without(const std::vector<NamedEffect>& effects, const MissionInput& input, const study::Progress& progress) {
+MissionInput without(const std::vector<NamedEffect>& effects, const MissionInput& recorded, const study::Progress& progress) {
+  MissionInput input = recorded;
+  for (const NamedEffect& one : effects)
+    if (one.sample != nullptr) one.sample->model(input, one.sample->site, static_cast<int>(one.axis), one.value);
   std::vector<EffectPtr> suggested;
   for (const NamedEffect& one : effects)
     if (one.suggested) suggested.push_back(one.suggested);
@@ -114,7 +117,7 @@ MissionInput without(const std::vector<NamedEffect>& effects, const MissionInput
   const std::vector<Hypothesis>& all = run.hypotheses().all();
   std::vector<Taken> taken;
   for (const NamedEffect& one : effects) {
-    if (one.noise != nullptr) continue;
+    if (one.effect == nullptr) continue;
     const auto h = std::ranges::find_if(all, [&](const Hypothesis& x) { return x.effect == one.effect && x.axis == one.axis; });
     if (h == all.end())
       throw InputError({input.imu.source, 0, fmt::format("nothing that {} could act on", one.effect->name),

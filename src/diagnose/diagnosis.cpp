@@ -23,6 +23,7 @@ constexpr double kNoiseFalseAlarm = 0.01;  // random effects
 constexpr double kFormFalseAlarm = 0.005;  // lines, and relations
 constexpr double kStable = 0.5;            // of a relation, from where it is believed
 constexpr double kUncertain = 0.1;         // of a likelihood ratio whose variance is that of some hundred draws
+constexpr double kLeastOfSamples = 3.0;    // logarithm of the likelihood ratio, from where a converter's mark matters
 constexpr std::size_t kMostRandom = 4;
 
 /// A start that the data decide: it was found by a run that knew nothing of the effect, which may be in it. The filter is
@@ -57,6 +58,7 @@ class Search {
     result_.grade = grade_;
     result_.before = run_->fit();
     result_.innovations_before = run_->solution().forward.innovations;
+    look_at_samples();
   }
 
   /// @return  whether something was done that may show more
@@ -85,7 +87,7 @@ class Search {
 
   Diagnosis finish() {
     describe_what_was_not_found();
-    if (noise_) result_.noise = noise_->findings;
+    if (noise_) std::ranges::copy(noise_->findings, std::back_inserter(result_.noise));
     std::ranges::move(random_effects_, std::back_inserter(result_.noise));
     for (std::size_t i = 0; i < result_.findings.size(); ++i) result_.findings[i].value = taken_[i].value;
     join_entries_with_exits();
@@ -135,6 +137,39 @@ class Search {
     ++result_.runs;
   }
 
+  /// What converters do is seen without a filter; whether it matters is not.
+  void look_at_samples() {
+    for (const SampleEffect& effect : sample_catalogue())
+      for (int axis = 0; axis < 3; ++axis) {
+        const std::optional<double> found = effect.find(axis_series(input_, effect.site, axis));
+        if (!found) continue;
+        const double before = run_->log_likelihood();
+        MissionInput stated = input_;
+        effect.model(input_, effect.site, axis, *found);
+        run();
+        const double gained = run_->log_likelihood() - before;
+        if (gained < kLeastOfSamples) {
+          input_ = std::move(stated);
+          run();
+          continue;
+        }
+        result_.noise.push_back({.name = std::string(effect.name),
+                                 .sensor = std::string(name(effect.site)),
+                                 .axis = axis_letter(axis),
+                                 .parameter = std::string(effect.parameter),
+                                 .unit = std::string(effect.unit),
+                                 .value = *found,
+                                 .sd = 0.0,
+                                 .delta_log_likelihood = gained,
+                                 .p_value = std::exp(-gained),
+                                 .place = NoiseFinding::Place::kEffects,
+                                 .meaning = std::string(effect.meaning),
+                                 .equation = std::string(effect.equation),
+                                 .separating_manoeuvre = std::string(effect.separating_manoeuvre)});
+      }
+  }
+  static std::string axis_letter(int axis) { return {static_cast<char>('x' + axis)}; }
+
   /// Noise first where it explains more than the likeliest mean effect: a fit of what is stated, or a random effect beside it.
   bool take_noise(const Examination& examination, double mean_gain) {
     std::optional<FittedNoise> stated;
@@ -152,6 +187,7 @@ class Search {
 
   /// The likeliest random effect of an axis, and on the same axis the others, whose gains are set against each other.
   bool take_random_effect(const Examination& examination, double to_beat) {
+    beaten_.clear();
     const NoiseSuspicions suspected = noise_suspicions(examination, *run_);
     const NoiseSuspicion* first = nullptr;
     for (const NoiseSuspicion& s : suspected.all)
@@ -168,6 +204,7 @@ class Search {
     const double p_value = suspected.chance.p_value(2.0 * std::max(0.0, best.gain));
     if (p_value > kNoiseFalseAlarm || best.gain <= to_beat) {
       if (p_value > kNoiseFalseAlarm) refused_noise_.push_back(first->noise);
+      beaten_ = std::move(fits);
       return false;
     }
     describe(fits, p_value);
@@ -187,23 +224,38 @@ class Search {
         best = &s;
     return best;
   }
+  [[nodiscard]] static Alternative alternative(const FittedEffect& fit, double gain) {
+    return {std::string(fit.noise.effect->name), std::string(name(fit.noise.effect->site)), axis_letter(fit.noise.axis),
+            gain - fit.gain};
+  }
+  [[nodiscard]] Alternative alternative(const Suspicion& s, double log_odds) const {
+    const Hypothesis& h = run_->hypotheses()[s.hypothesis];
+    return {std::string(h.effect->name), std::string(name(h.effect->site)), h.axis_name(), log_odds};
+  }
+
   /// @param fits  the first is taken
   void describe(const std::vector<FittedEffect>& fits, double p_value) {
     const FittedEffect& f = fits.front();
     NoiseFinding finding{.name = std::string(f.noise.effect->name),
                          .sensor = std::string(name(f.noise.effect->site)),
-                         .axis = std::string(1, static_cast<char>('x' + f.noise.axis)),
+                         .axis = axis_letter(f.noise.axis),
                          .parameter = std::string(f.noise.effect->parameter),
                          .unit = std::string(f.noise.effect->unit),
                          .value = f.noise.root,
                          .sd = f.noise.root * f.log_sd,
                          .delta_log_likelihood = f.gain,
                          .p_value = p_value,
+                         .place = f.noise.effect->level ? NoiseFinding::Place::kEffects : NoiseFinding::Place::kErrorModel,
                          .time_s = f.noise.time,
-                         .effect = f.noise.effect};
+                         .meaning = std::string(f.noise.effect->meaning),
+                         .equation = std::string(f.noise.effect->equation),
+                         .separating_manoeuvre = std::string(f.noise.effect->separating_manoeuvre)};
     for (std::size_t i = 1; i < fits.size(); ++i)
-      if (f.gain - fits[i].gain < kLogOdds)
-        finding.alternatives.push_back({fits[i].noise.effect, fits[i].noise.time, f.gain - fits[i].gain});
+      if (f.gain - fits[i].gain < kLogOdds) finding.alternatives.push_back(alternative(fits[i], f.gain));
+    for (const Suspicion& s : suspicions_.all)
+      if (f.gain - 0.5 * s.likelihood_ratio < kLogOdds)
+        finding.alternatives.push_back(alternative(s, f.gain - 0.5 * s.likelihood_ratio));
+    std::ranges::sort(finding.alternatives, {}, &Alternative::log_odds);
     random_effects_.push_back(std::move(finding));
   }
 
@@ -347,7 +399,10 @@ class Search {
     for (const Suspicion& other : suspicions_.all)
       if (other.hypothesis != s.hypothesis &&
           (s.log_bayes - other.log_bayes < kLogOdds || s.likelihood_ratio - other.likelihood_ratio < 2.0 * kLogOdds))
-        finding.alternatives.push_back({hypotheses[other.hypothesis], other.from, s.log_bayes - other.log_bayes});
+        finding.alternatives.push_back(alternative(other, std::max(s.log_bayes - other.log_bayes,
+                                                                   0.5 * (s.likelihood_ratio - other.likelihood_ratio))));
+    for (const FittedEffect& fit : beaten_)
+      if (0.5 * s.likelihood_ratio - fit.gain < kLogOdds) finding.alternatives.push_back(alternative(fit, 0.5 * s.likelihood_ratio));
     std::ranges::sort(finding.alternatives, {}, &Alternative::log_odds);
     result_.findings.push_back(std::move(finding));
   }
@@ -426,6 +481,7 @@ class Search {
   std::vector<EffectPtr> refused_forms_;
   std::vector<AddedNoise> added_;
   std::vector<AddedNoise> refused_noise_;
+  std::vector<FittedEffect> beaten_;  ///< random effects that explain less than the mean effect that is likeliest
   std::vector<NoiseFinding> random_effects_;
   Diagnosis result_;
 };

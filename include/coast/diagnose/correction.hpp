@@ -6,6 +6,7 @@
 
 #include "coast/diagnose/hypotheses.hpp"
 #include "coast/diagnose/noise_effect.hpp"
+#include "coast/diagnose/sample_effect.hpp"
 #include "coast/study/mission.hpp"
 
 namespace coast::diagnose {
@@ -21,8 +22,9 @@ struct Taken {
 
 /// The same without a recording at hand: how files name it.
 struct NamedEffect {
-  const Effect* effect = nullptr;      ///< of the catalogue, or `suggested`; null: a random one
-  const NoiseEffect* noise = nullptr;  ///< is added to the noise level; `value` is the root of its variance
+  const Effect* effect = nullptr;        ///< of the catalogue, or `suggested`; null: a random one
+  const NoiseEffect* noise = nullptr;    ///< is added to the noise level; `value` is the root of its variance
+  const SampleEffect* sample = nullptr;  ///< of a converter
   Eigen::Index axis = 0;
   double value = 0.0;
   std::optional<double> from_s;  ///< seconds of week

@@ -8,13 +8,15 @@
 #include "coast/diagnose/correction.hpp"
 #include "coast/diagnose/examination.hpp"
 #include "coast/diagnose/noise_effect.hpp"
+#include "coast/diagnose/sample_effect.hpp"
 
 namespace coast::diagnose {
 
 /// An explanation that the data cannot exclude beside the one given.
 struct Alternative {
-  Hypothesis hypothesis;
-  std::optional<geo::GpsTime> from;
+  std::string name;
+  std::string sensor;
+  std::string axis;
   double log_odds = 0.0;  ///< natural logarithm, for the effect found against this one
 };
 
@@ -42,9 +44,11 @@ struct NotObservable {
   std::string reason;
 };
 
-/// Noise that differs from what is stated.
+/// Noise that differs from what is stated, or what a converter does to the samples.
 struct NoiseFinding {
-  std::string name;  ///< gnss_sd_optimistic, gnss_correlated_error, imu_white_noise, or a random effect's
+  /// Where run.yaml takes it: `noise` of IMU and GNSS, the error model, or `effects`.
+  enum class Place { kNoise, kErrorModel, kEffects };
+  std::string name;  ///< gnss_sd_optimistic, gnss_correlated_error, imu_white_noise, or of the tables
   std::string sensor;
   std::string axis;
   std::string parameter;
@@ -53,13 +57,11 @@ struct NoiseFinding {
   double sd = 0.0;
   double delta_log_likelihood = 0.0;
   double p_value = 1.0;
-  double time_s = 0.0;                  ///< correlation time; 0: it has none
-  const NoiseEffect* effect = nullptr;  ///< of the table of random effects; null: of the noise that is stated already
-  struct Alternative {
-    const NoiseEffect* effect = nullptr;
-    double time_s = 0.0;
-    double log_odds = 0.0;  ///< for what was found against this one
-  };
+  Place place = Place::kNoise;
+  double time_s = 0.0;  ///< correlation time; 0: it has none
+  std::string meaning = {};
+  std::string equation = {};
+  std::string separating_manoeuvre = {};
   std::vector<Alternative> alternatives = {};
 };
 

@@ -1,31 +1,7 @@
-#include <algorithm>
-
 #include "coast/diagnose/correction.hpp"
 #include "noise_effects.hpp"
 
 namespace coast::diagnose {
-
-namespace {
-
-/// The levels that hold from each instant to the next, on top of those that are there.
-void raise_levels(record::ImuRecording& imu, Site site, int axis, double added, double stated,
-                  const std::vector<geo::GpsTime>& t, const std::vector<double>& level) {
-  const std::vector<record::NoiseLevel> before = std::move(imu.noise);
-  imu.noise.clear();
-  auto old = before.begin();
-  for (std::size_t k = 0; k + 1 < t.size(); ++k) {
-    record::NoiseLevel now{.from = t[k], .to = t[k + 1]};
-    while (old != before.end() && old->to <= t[k]) ++old;
-    if (old != before.end() && old->from <= t[k]) {
-      now.gyro = old->gyro;
-      now.accel = old->accel;
-    }
-    (site == Site::kGyro ? now.gyro : now.accel)(axis) += added * level[k] / stated;
-    imu.noise.push_back(now);
-  }
-}
-
-}  // namespace
 
 NoiseEffect dynamics_dependent_noise(Site site) {
   const bool gyro = site == Site::kGyro;
@@ -56,8 +32,9 @@ NoiseEffect dynamics_dependent_noise(Site site) {
       .add =
           [site](MissionInput& input, int axis, double root, double, const std::vector<geo::GpsTime>& t,
                  const std::vector<double>& level) {
-            const double stated = input.setup.model.white_density(sensor_of(site), axis).value;
-            if (stated > 0.0) raise_levels(input.imu, site, axis, root * root, stated, t, level);
+            std::vector<RaisedNoise> stretches;
+            for (std::size_t k = 0; k + 1 < t.size(); ++k) stretches.push_back({t[k], t[k + 1], root * root * level[k]});
+            raise_noise(input, site, axis, stretches);
           },
   };
 }

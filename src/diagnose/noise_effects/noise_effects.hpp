@@ -1,6 +1,7 @@
 #pragma once
 // The functions that make the random effects, one file each, and what they share; private to the room.
 
+#include "../sample_effects/sample_effects.hpp"
 #include "coast/diagnose/noise_effect.hpp"
 #include "coast/noise/process.hpp"
 
@@ -16,9 +17,6 @@ NoiseEffect dynamics_dependent_noise(Site site);
 
 /// Appends processes to an axis of the mission's error model.
 void append(const std::vector<noise::ProcessPtr>& processes, noise::Sensor sensor, int axis, MissionInput& input);
-[[nodiscard]] inline noise::Sensor sensor_of(Site site) {
-  return site == Site::kGyro ? noise::Sensor::kGyro : noise::Sensor::kAccel;
-}
 [[nodiscard]] inline std::string_view signal_unit(Site site) {
   return site == Site::kGyro ? "rad/s" : "m/s^2";
 }
