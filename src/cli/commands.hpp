@@ -48,8 +48,13 @@ void array_study(const std::filesystem::path& study_yaml, const CommonOptions& o
 [[nodiscard]] std::string array_study_example(const std::string& indent);
 /// The array.yaml of the help page, every line behind `indent`.
 [[nodiscard]] std::string array_example(const std::string& indent);
+struct DiagnoseOptions {
+  int twins = 20;
+  /// The user's own simulation in place of twins of the configured model: a scenario, or the run.yaml of a simulated recording.
+  std::filesystem::path simulation;
+};
 /// `coast diagnose run.yaml`: what the configured model leaves out -> diagnosis.json, run.diagnosed.yaml, report.html.
-void diagnose(const std::filesystem::path& run_yaml, const CommonOptions& options);
+void diagnose(const std::filesystem::path& run_yaml, const DiagnoseOptions& choice, const CommonOptions& options);
 /// `coast compare a.nav b.nav`: differences a - b in N, E, D and attitude.
 void compare(const std::filesystem::path& a, const std::filesystem::path& b, const Eigen::Vector3d& lever_arm_b,
              const CommonOptions& options);

@@ -2,7 +2,9 @@
 
 #include "coast/diagnose/diagnosis.hpp"
 #include "coast/io/writers.hpp"
+#include "coast/io/yaml.hpp"
 #include "coast/report/render.hpp"
+#include "coast/simulate/scenario.hpp"
 #include "commands.hpp"
 #include "diagnosis_json.hpp"
 #include "load.hpp"
@@ -10,32 +12,74 @@
 
 namespace coast::cli {
 
-void diagnose(const std::filesystem::path& run_yaml, const CommonOptions& options) {
-  ProgressLine line(options.quiet);
-  const study::Progress progress = [&line](const char* what, double fraction) { line.show(what, fraction); };
-  const RunConfig config = read_run_config(run_yaml);
+namespace {
+
+diagnose::MissionInput recorded_input(const std::filesystem::path& run_yaml, const RunConfig& config, Recordings& recordings) {
   if (config.tight)
     throw InputError({run_yaml.string(), 0, "tightly coupled observations", "positions: effects are sought in fixes", ""});
-  Recordings recordings = load(config, [&line](double share) { line.show("solving GNSS positions", share); });
-  const std::filesystem::path out = output_folder(run_yaml, options.out);
-  line.clear();
-  print_inspection(recordings, options.quiet);
   if (!config.effects.empty())
     throw InputError({run_yaml.string(), 0, "`effects` that were found already", "a run without them",
                       "Take them out of the file: they are sought from nothing."});
   const study::Setup setup = setup_of(config, recordings, {});
-  const diagnose::MissionInput input{std::move(recordings.imu), std::move(recordings.gnss), setup};
-  const diagnose::Diagnosis diagnosis = diagnose::diagnose(input, {}, progress);
+  return {std::move(recordings.imu), std::move(recordings.gnss), setup};
+}
+
+/// Recordings of a scenario with as many seeds, each processed as the scenario says that its sensors are.
+std::vector<diagnose::MissionInput> from_scenario(const config::Node& root, const study::Setup& as, std::size_t count) {
+  const simulate::Scenario scenario = simulate::Scenario::from(root, [](const auto& file) { return io::load_yaml(file); });
+  root.refuse_unasked();
+  const simulate::ErrorFreeMission mission(scenario);
+  study::Setup setup = as;
+  setup.start.reset();
+  setup.C_s_b = ins::C_s_b(scenario.mounting);
+  setup.lever_arm_b = scenario.gnss.lever_arm_b;
+  setup.time_offset_s = scenario.gnss.time_offset;
+  if (scenario.error_model) setup.model = *scenario.error_model;
+  std::vector<diagnose::MissionInput> inputs;
+  for (std::size_t i = 0; i < count; ++i) {
+    simulate::ErrorFreeMission::Recordings recordings = mission.recorded(scenario.error_model, scenario.seed + i);
+    ins::to_body(recordings.imu, setup.C_s_b);
+    inputs.push_back({std::move(recordings.imu), std::move(recordings.gnss), setup});
+  }
+  return inputs;
+}
+
+std::vector<diagnose::MissionInput> simulated_inputs(const std::filesystem::path& file, const study::Setup& as, int count) {
+  if (file.empty()) return {};
+  const config::Node root = io::load_yaml(file);
+  if (root.text("schema", "coast.run/1").starts_with("coast.scenario/"))
+    return from_scenario(root, as, static_cast<std::size_t>(std::max(1, count)));
+  const RunConfig config = read_run_config(file);
+  Recordings recordings = load(config, {});
+  return {recorded_input(file, config, recordings)};
+}
+
+}  // namespace
+
+void diagnose(const std::filesystem::path& run_yaml, const DiagnoseOptions& choice, const CommonOptions& options) {
+  ProgressLine line(options.quiet);
+  const study::Progress progress = [&line](const char* what, double fraction) { line.show(what, fraction); };
+  const RunConfig config = read_run_config(run_yaml);
+  Recordings recordings = load(config, [&line](double share) { line.show("solving GNSS positions", share); });
+  const std::filesystem::path out = output_folder(run_yaml, options.out);
+  line.clear();
+  print_inspection(recordings, options.quiet);
+  const diagnose::MissionInput input = recorded_input(run_yaml, config, recordings);
+  const std::vector<diagnose::MissionInput> simulations = simulated_inputs(choice.simulation, input.setup, choice.twins);
+  std::optional<SimulationCheck> simulation;
+  if (!simulations.empty())
+    simulation = SimulationCheck{choice.simulation.string(), diagnose::diagnose(simulations.front(), {.twins = 0}, progress)};
+  const diagnose::Diagnosis diagnosis = diagnose::diagnose(input, {.twins = choice.twins}, progress, simulations);
   line.clear();
   const std::filesystem::path error_model = std::filesystem::absolute(out / "error_model.diagnosed.yaml");
   const std::string diagnosed = diagnosed_yaml(config.root.resolved_yaml(), diagnosis, error_model.string());
   if (changes_error_model(diagnosis)) io::write_text(error_model, diagnosis.modelled.setup.model.yaml());
-  io::write_text(out / "diagnosis.json", diagnosis_json(diagnosis, input));
+  io::write_text(out / "diagnosis.json", diagnosis_json(diagnosis, input, simulation));
   io::write_text(out / "run.diagnosed.yaml", diagnosed);
-  const report::Page page = diagnosis_page(run_yaml.filename().string(), diagnosis, diagnosed);
+  const report::Page page = diagnosis_page(run_yaml.filename().string(), diagnosis, diagnosed, simulation);
   io::write_text(out / "report.json", report::to_json(page));
   io::write_text(out / "report.html", report::render(page));
-  if (!options.quiet) fmt::print("{}report: {}\n", diagnosis_text(diagnosis), (out / "report.html").string());
+  if (!options.quiet) fmt::print("{}report: {}\n", diagnosis_text(diagnosis, simulation), (out / "report.html").string());
 }
 
 }  // namespace coast::cli

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
 
@@ -52,6 +53,7 @@ Json finding_json(const diagnose::Finding& f, double start_s, double end_s) {
     j["parameters"].push_back(parameter_json(one.name, one.value, one.unit));
   if (!effect.relation.empty()) j["relation"] = effect.relation;
   if (f.stability) j["stability"] = *f.stability;
+  if (f.held_out_gain) j["held_out_gain"] = *f.held_out_gain;
   j["delta_log_likelihood"] = f.delta_log_likelihood;
   j["p_value"] = f.p_value;
   j["explanation"] = explanation(f);
@@ -93,16 +95,64 @@ std::string explanation(const diagnose::NoiseFinding& f) {
   return text + other_readings(f.alternatives, f.separating_manoeuvre);
 }
 
-std::string diagnosis_json(const diagnose::Diagnosis& d, const diagnose::MissionInput& input) {
+bool SimulationCheck::has(const diagnose::Finding& finding) const {
+  constexpr double kEqual = 4.0;  // sd of the difference
+  return std::ranges::any_of(diagnosis.findings, [&](const diagnose::Finding& other) {
+    return other.hypothesis.effect->name == finding.hypothesis.effect->name &&
+           other.hypothesis.effect->site == finding.hypothesis.effect->site &&
+           other.hypothesis.axis == finding.hypothesis.axis &&
+           std::abs(other.value - finding.value) < kEqual * std::hypot(other.sd, finding.sd);
+  });
+}
+
+namespace {
+
+Json effects_json(const diagnose::Diagnosis& d, double start, double end, const std::optional<SimulationCheck>& simulation) {
+  std::vector<Json> effects;
+  for (const diagnose::Finding& f : d.findings) {
+    effects.push_back(finding_json(f, start, end));
+    if (simulation) effects.back()["in_simulation"] = simulation->has(f);
+  }
+  for (const diagnose::NoiseFinding& f : d.noise) effects.push_back(noise_json(f, start, end));
+  std::ranges::stable_sort(effects, std::ranges::greater{},
+                           [](const Json& effect) { return effect["delta_log_likelihood"].get<double>(); });
+  return effects;
+}
+
+Json twins_json(const std::vector<diagnose::TwinStatistic>& twins) {
+  Json list = Json::array();
+  for (const diagnose::TwinStatistic& t : twins)
+    list.push_back({{"statistic", t.name}, {"real", t.real}, {"q05", t.q05}, {"q50", t.q50}, {"q95", t.q95}, {"p_adjusted", t.p_adjusted}});
+  return list;
+}
+
+Json verification_json(const diagnose::Diagnosis& d) {
+  Json j = {{"log_likelihood_per_epoch", {d.before.log_likelihood_per_epoch, d.after.log_likelihood_per_epoch}},
+            {"nis", {d.before.nis, d.after.nis}},
+            {"outage_rms_m", {d.before.outage_rms_m, d.after.outage_rms_m}},
+            {"outage_difference_m", {{"mean", d.outage_change.mean}, {"sd", d.outage_change.sd}, {"outages", d.outage_change.count}}}};
+  if (d.held_out) {
+    j["held_out_log_likelihood_per_epoch"] = {d.held_out->before_per_epoch, d.held_out->after_per_epoch};
+    j["held_out"] = {{"gain", d.held_out->gain}, {"sd", d.held_out->gain_sd}, {"blocks", d.held_out->blocks}, {"better", d.held_out->better}};
+  }
+  if (!d.twins_after.empty()) j["twins"] = twins_json(d.twins_after);
+  j["rejected"] = d.rejected;
+  return j;
+}
+
+}  // namespace
+
+std::string diagnosis_json(const diagnose::Diagnosis& d, const diagnose::MissionInput& input,
+                           const std::optional<SimulationCheck>& simulation) {
   const double start = input.imu.samples.front().t.sow();
   const double end = input.imu.samples.back().t.sow();
   Json j;
   j["schema"] = "coast.diagnosis/1";
   j["mismatch"] = !d.findings.empty() || !d.noise.empty();
   j["reference_used"] = false;
-  j["effects"] = Json::array();
-  for (const diagnose::Finding& f : d.findings) j["effects"].push_back(finding_json(f, start, end));
-  for (const diagnose::NoiseFinding& f : d.noise) j["effects"].push_back(noise_json(f, start, end));
+  j["effects"] = effects_json(d, start, end, simulation);
+  if (simulation)
+    j["simulation"] = {{"source", simulation->source}, {"effects", effects_json(simulation->diagnosis, start, end, {})}};
   j["detectable_not_found"] = Json::array();
   for (const diagnose::Detectable& one : d.detectable_not_found) {
     Json entry = hypothesis_json(one.hypothesis);
@@ -116,9 +166,8 @@ std::string diagnosis_json(const diagnose::Diagnosis& d, const diagnose::Mission
     entry["reason"] = one.reason;
     j["not_observable"].push_back(entry);
   }
-  j["verification"] = {{"log_likelihood_per_epoch", {d.before.log_likelihood_per_epoch, d.after.log_likelihood_per_epoch}},
-                       {"nis", {d.before.nis, d.after.nis}},
-                       {"outage_rms_m", {d.before.outage_rms_m, d.after.outage_rms_m}}};
+  j["twins"] = twins_json(d.twins);
+  j["verification"] = verification_json(d);
   j["modelled_run"] = "run.diagnosed.yaml";
   j["grade"] = diagnose::name(d.grade);
   j["threshold"] = d.threshold;
@@ -126,14 +175,20 @@ std::string diagnosis_json(const diagnose::Diagnosis& d, const diagnose::Mission
   return j.dump(1) + "\n";
 }
 
-std::string diagnosis_text(const diagnose::Diagnosis& d) {
-  if (d.findings.empty() && d.noise.empty()) return "Nothing is missing from the model that this mission could show.\n";
+std::string diagnosis_text(const diagnose::Diagnosis& d, const std::optional<SimulationCheck>& simulation) {
   std::string text;
+  if (d.findings.empty() && d.noise.empty()) text = "Nothing is missing from the model that this mission could show.\n";
   for (const diagnose::Finding& f : d.findings)
-    text += fmt::format("{}{}: {}\n", full_name(f.hypothesis),
-                        f.from ? fmt::format(" from {:.1f} s", f.from->sow()) : std::string(), explanation(f));
+    text += fmt::format("{}{}: {}{}\n", full_name(f.hypothesis),
+                        f.from ? fmt::format(" from {:.1f} s", f.from->sow()) : std::string(), explanation(f),
+                        simulation && simulation->has(f) ? " The simulation has it too." : "");
   for (const diagnose::NoiseFinding& f : d.noise)
-    text += fmt::format("{} {} {}: {} = {:.3g} +- {:.2g} {}\n", f.name, f.sensor, f.axis, f.parameter, f.value, f.sd, f.unit);
+    text += fmt::format("{} {} {}: {}\n", f.name, f.sensor, f.axis, explanation(f));
+  if (simulation)
+    for (const diagnose::Finding& f : simulation->diagnosis.findings)
+      if (!SimulationCheck{{}, d}.has(f))
+        text += fmt::format("{}, {:.3g} {}: in the simulation alone.\n", full_name(f.hypothesis), f.value,
+                            f.hypothesis.effect->unit);
   return text;
 }
 

@@ -1,6 +1,7 @@
 #pragma once
 // What `coast diagnose` leaves: diagnosis.json, run.diagnosed.yaml, the page, and the lines for the terminal.
 
+#include <optional>
 #include <string>
 
 #include "coast/diagnose/diagnosis.hpp"
@@ -8,9 +9,19 @@
 
 namespace coast::cli {
 
-/// Schema coast.diagnosis/1.
-[[nodiscard]] std::string diagnosis_json(const diagnose::Diagnosis& diagnosis, const diagnose::MissionInput& input);
-[[nodiscard]] std::string diagnosis_text(const diagnose::Diagnosis& diagnosis);
+/// What the search finds in the user's own simulation.
+struct SimulationCheck {
+  std::string source;
+  diagnose::Diagnosis diagnosis;
+  /// Whether the simulation has an effect too, of about that size.
+  [[nodiscard]] bool has(const diagnose::Finding& finding) const;
+};
+
+/// Schema coast.diagnosis/1 (docs/schema/diagnosis.schema.json). Effects by what they explain, most first.
+[[nodiscard]] std::string diagnosis_json(const diagnose::Diagnosis& diagnosis, const diagnose::MissionInput& input,
+                                         const std::optional<SimulationCheck>& simulation);
+[[nodiscard]] std::string diagnosis_text(const diagnose::Diagnosis& diagnosis,
+                                         const std::optional<SimulationCheck>& simulation);
 /// The run's own configuration with what was found: `effects`, the GNSS noise, and the error model of that name where it has
 /// changed. @param resolved  run.resolved.yaml
 [[nodiscard]] std::string diagnosed_yaml(const std::string& resolved, const diagnose::Diagnosis& diagnosis,
@@ -18,7 +29,8 @@ namespace coast::cli {
 /// Whether an error model with what was found differs from the configured one.
 [[nodiscard]] bool changes_error_model(const diagnose::Diagnosis& diagnosis);
 [[nodiscard]] report::Page diagnosis_page(const std::string& title, const diagnose::Diagnosis& diagnosis,
-                                          const std::string& diagnosed_yaml);
+                                          const std::string& diagnosed_yaml,
+                                          const std::optional<SimulationCheck>& simulation);
 /// What was found, how large and what else it could be, in a paragraph.
 [[nodiscard]] std::string explanation(const diagnose::Finding& finding);
 [[nodiscard]] std::string explanation(const diagnose::NoiseFinding& finding);

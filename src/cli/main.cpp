@@ -72,6 +72,18 @@ void add_compare(CLI::App& app, std::filesystem::path& first, std::filesystem::p
   });
 }
 
+void add_diagnose(CLI::App& app, std::filesystem::path& input, coast::cli::DiagnoseOptions& choice, CommonOptions& common) {
+  auto* diagnose = subcommand(app, "diagnose", "what the configured model leaves out: where, what, how sure, what it gains",
+                              "coast diagnose run.yaml --out diagnosis", common);
+  diagnose->add_option("run", input, "run.yaml, as for `coast process`")->required();
+  diagnose->add_option("--twins", choice.twins, "simulated twins that the recording is set against; 0: none")
+      ->check(CLI::Range(0, 1000))
+      ->capture_default_str();
+  diagnose->add_option("--simulation", choice.simulation,
+                       "your own simulation in place of the twins: a scenario, or the run.yaml of a simulated recording");
+  diagnose->callback([&] { coast::cli::diagnose(input, choice, common); });
+}
+
 int run(int argc, char** argv) {
   CLI::App app{"coast: post-mission INS/GNSS trajectories"};
   app.set_version_flag("--version", COAST_VERSION);
@@ -89,10 +101,8 @@ int run(int argc, char** argv) {
   process->add_option("run", input, "run.yaml")->required();
   process->callback([&] { coast::cli::process(input, common); });
 
-  auto* diagnose = subcommand(app, "diagnose", "what the configured model leaves out: where, what, how sure, what it gains",
-                              "coast diagnose run.yaml --out diagnosis", common);
-  diagnose->add_option("run", input, "run.yaml, as for `coast process`")->required();
-  diagnose->callback([&] { coast::cli::diagnose(input, common); });
+  coast::cli::DiagnoseOptions diagnose_choice;
+  add_diagnose(app, input, diagnose_choice, common);
 
   auto* simulate = subcommand(app, "simulate", "trajectory + sensors -> a recording with its truth",
                               "coast simulate configs/scenarios/car_roundabout.yaml --out recording --seed 7", common);

@@ -118,6 +118,14 @@ report::Section fit_section(const Diagnosis& d) {
       cells({"NIS over degrees of freedom", number(d.before.nis), number(d.after.nis)}),
       cells({"outages of 20 s, rms of horizontal maxima, m", number(d.before.outage_rms_m), number(d.after.outage_rms_m)})};
   section.tables.push_back(std::move(table));
+  if (d.held_out)
+    section.notes.push_back({report::Note::Kind::kInfo, "On data that the sizes were not estimated from",
+                             fmt::format("Sizes from one half of the mission, in alternating blocks, on the other: logarithm of the "
+                                         "likelihood ratio {:.1f} +- {:.1f}, better in {:.0f} % of {} blocks.",
+                                         d.held_out->gain, d.held_out->gain_sd, 100.0 * d.held_out->better, d.held_out->blocks)});
+  for (const std::string& name : d.rejected)
+    section.notes.push_back({report::Note::Kind::kWarning, "Given up",
+                             fmt::format("{}: its size from one half of the mission makes the other half less likely.", name)});
   return section;
 }
 
@@ -152,15 +160,42 @@ report::Section detectable_section(const Diagnosis& d) {
   return section;
 }
 
+report::Table twin_table(const char* id, const char* title, const std::vector<diagnose::TwinStatistic>& twins) {
+  report::Table table;
+  table.id = id;
+  table.title = title;
+  table.columns = {{"figure", "", false}, {"recording", ""}, {"twins, 5 %", ""}, {"median", ""}, {"95 %", ""}, {"p", ""}};
+  for (const diagnose::TwinStatistic& t : twins)
+    table.rows.push_back(cells({t.name, number(t.real), number(t.q05), number(t.q50), number(t.q95), number(t.p_adjusted, 2)}));
+  return table;
+}
+
+report::Section twin_section(const Diagnosis& d, const std::optional<SimulationCheck>& simulation) {
+  report::Section section;
+  section.id = "twins";
+  section.title = "The recording among its twins";
+  section.lead =
+      simulation ? fmt::format("Figures of the recording beside those of {}. p: that any figure of a simulated recording lies as far out.",
+                               simulation->source)
+                 : std::string("Recordings of the same motion, simulated as the model says and run through the same steps. p: that "
+                               "any figure of a twin lies as far out by chance.");
+  section.tables.push_back(twin_table("twins-before", "Of the configured model", d.twins));
+  if (!d.twins_after.empty()) section.tables.push_back(twin_table("twins-after", "Of the model with what was found", d.twins_after));
+  return section;
+}
+
 }  // namespace
 
-report::Page diagnosis_page(const std::string& title, const Diagnosis& d, const std::string& diagnosed_yaml) {
+report::Page diagnosis_page(const std::string& title, const Diagnosis& d, const std::string& diagnosed_yaml,
+                            const std::optional<SimulationCheck>& simulation) {
   report::Page page;
   page.title = title;
   page.subtitle = "What the configured model leaves out";
   if (!d.innovations_before.empty()) page.start = d.innovations_before.front().t;
   page.tiles = diagnosis_tiles(d);
-  page.sections = {missing_section(d), fit_section(d), detectable_section(d)};
+  page.sections = {missing_section(d), fit_section(d)};
+  if (!d.twins.empty()) page.sections.push_back(twin_section(d, simulation));
+  page.sections.push_back(detectable_section(d));
   page.sections.back().notes.push_back({report::Note::Kind::kCode, "run.diagnosed.yaml", diagnosed_yaml});
   page.footer = fmt::format("coast {}, coast diagnose", COAST_VERSION);
   return page;

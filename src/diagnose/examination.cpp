@@ -178,6 +178,7 @@ Examination examine(const estimate::Mission& mission, const estimate::StateLayou
   simulate::Normal normal(simulate::stream_seed(options.seed, {1}));
   estimate::EffectPassOptions pass;
   pass.draws = options.draws;
+  pass.counts = options.counts;
   pass.fill_normal = [&normal](Eigen::Ref<Eigen::MatrixXd> values) {
     for (double& value : values.reshaped()) value = normal();
   };

@@ -17,6 +17,12 @@ MissionRun::MissionRun(MissionInput input, Grade grade, const std::vector<Effect
   solution_ = study::solve(mission_, mission_.options(), true, outputs, progress);
 }
 
+estimate::FilterResult forward(MissionInput input) {
+  const study::PreparedMission mission(std::move(input.imu), std::move(input.gnss), std::move(input.setup), {});
+  const estimate::ForwardFilter filter(mission.mission(), mission.model(), mission.options());
+  return filter.run(mission.start_state(filter), {});
+}
+
 Fit MissionRun::fit() const {
   const study::OutageSweep sweep{.every_s = 45.0, .first_s = 120.0, .durations_s = {20.0}};
   Fit fit;
@@ -35,7 +41,10 @@ Fit MissionRun::fit() const {
   const std::vector<study::OutageResult> results =
       study::run_outages(mission_, solution_.knots, {gap_free_.trajectory()}, outages);
   double sum = 0.0;
-  for (const study::OutageResult& result : results) sum += std::pow(result.forward.horizontal_max_m, 2);
+  for (const study::OutageResult& result : results) {
+    sum += std::pow(result.forward.horizontal_max_m, 2);
+    fit.outages_m.push_back(result.forward.horizontal_max_m);
+  }
   if (!results.empty()) fit.outage_rms_m = std::sqrt(sum / static_cast<double>(results.size()));
   return fit;
 }

@@ -42,4 +42,7 @@ class MissionRun {
   Hypotheses hypotheses_;
 };
 
+/// A forward run alone, from the start that the input gives.
+[[nodiscard]] estimate::FilterResult forward(MissionInput input);
+
 }  // namespace coast::diagnose

@@ -26,12 +26,6 @@ struct PowerByChance {
   [[nodiscard]] double scored_variance(double power) const { return 2.0 * (power - mean) / variance; }
 };
 
-double log_likelihood(MissionInput input) {
-  const study::PreparedMission mission(std::move(input.imu), std::move(input.gnss), std::move(input.setup), {});
-  const estimate::ForwardFilter filter(mission.mission(), mission.model(), mission.options());
-  return filter.run(mission.start_state(filter), {}).log_likelihood;
-}
-
 }  // namespace
 
 std::vector<double> level_of(const NoiseEffect& effect, const std::vector<geo::GpsTime>& t, const MissionRun& run) {
@@ -87,7 +81,7 @@ FittedEffect fitted_effect(const AddedNoise& from, const MissionInput& input, co
     noise.root = std::exp(log_root);
     noise.add_to(with);
     if (with.setup.start) with.setup.start_sensor_errors = sensor_states_in(layout_of(with), layout, input.setup.start_sensor_errors);
-    return log_likelihood(std::move(with)) - without;
+    return forward(std::move(with)).log_likelihood - without;
   };
   double x = std::log(from.root);
   double y = gain_at(x);

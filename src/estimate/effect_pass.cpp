@@ -135,10 +135,14 @@ class EffectRecursion {
   // As through_update, with innovations out of the filter's own covariance.
   void draw(const AppliedUpdate& u, const Eigen::MatrixXd& D) {
     if (null_.cols() == 0) return;
-    const Eigen::LLT<ComponentCov> llt(u.S_inv);
     Eigen::MatrixXd S_inv_y(u.y.size(), null_.cols());
     options_.fill_normal(S_inv_y);
-    S_inv_y = llt.matrixL() * S_inv_y;  // of y with covariance S
+    if (u.S_inv.isZero(0.0)) {
+      S_inv_y.setZero();
+    } else {
+      const Eigen::LLT<ComponentCov> llt(u.S_inv);
+      S_inv_y = llt.matrixL() * S_inv_y;  // of y with covariance S
+    }
     S_inv_y.noalias() -= u.K.transpose() * null_x_;
     null_.noalias() += D.transpose() * S_inv_y;
     null_x_.noalias() += u.H.transpose() * S_inv_y;
@@ -152,6 +156,12 @@ class EffectRecursion {
   Eigen::MatrixXd N_cross_, N_;
   Eigen::MatrixXd null_x_, null_;
 };
+
+/// It moves the states as it did and its innovation is not asked.
+AppliedUpdate silent(AppliedUpdate update) {
+  update.S_inv.setZero();
+  return update;
+}
 
 }  // namespace
 
@@ -171,10 +181,11 @@ void effect_pass(const Mission& mission, const StateLayout& layout, const KnotSt
     const SampleCursor cursor{knot.next_sample, knot.remainder};
     const Eigen::Matrix3d C_n_e = geo::C_n_e(geo::geodetic_from_ecef(knot.post.nav.r_eb_e));
     const UpdateContext context = update_context(mission, layout, cursor, navigator, C_n_e);
+    const bool counted = !options.counts || options.counts(knot.post.nav.t);
     for (auto update = knot.updates.rbegin(); update != knot.updates.rend(); ++update) {
       D.setZero(update->y.size(), effects.size());
       effects.add_measurement_errors({update->kind, knot.next_sample, knot.post.nav, context}, D);
-      recursion.through_update(*update, D);
+      recursion.through_update(counted ? *update : silent(*update), D);
     }
     visit(recursion.at(knot.post.nav.t));
     if (options.progress && k % 256 == 0) options.progress(1.0 - static_cast<double>(k) / static_cast<double>(knots.size()));

@@ -30,6 +30,8 @@ struct Finding {
   double sd = 0.0;
   double delta_log_likelihood = 0.0;  ///< realised: runs with and without it, all others as they are
   double p_value = 1.0;
+  /// Logarithm of the likelihood ratio on blocks that its size was not estimated from, all others in.
+  std::optional<double> held_out_gain;
   std::vector<Alternative> alternatives;
   std::optional<double> stability;  ///< of a relation without a name: share of random halves of the mission that show it
 };
@@ -70,6 +72,31 @@ struct Fit {
   double log_likelihood_per_epoch = 0.0;
   double nis = 0.0;           ///< mean over degrees of freedom
   double outage_rms_m = 0.0;  ///< horizontal maxima of forward outages, against the run's own smoothed trajectory
+  std::vector<double> outages_m = {};  ///< one by one
+};
+
+/// A figure of the recording beside those of its twins.
+struct TwinStatistic {
+  std::string name;
+  double real = 0.0;
+  double q05 = 0.0, q50 = 0.0, q95 = 0.0;  ///< of the twins
+  double p_adjusted = 1.0;  ///< that any of the figures of a twin lies as far out among the other twins as this one
+};
+
+/// Effects with sizes from one half of the mission, in alternating blocks, on the other half, and the other way round.
+struct HeldOut {
+  int blocks = 0;
+  double gain = 0.0;  ///< logarithm of the likelihood ratio, all blocks together
+  double gain_sd = 0.0;  ///< by the spread from block to block
+  double better = 0.0;   ///< share of blocks
+  double before_per_epoch = 0.0, after_per_epoch = 0.0;  ///< log-likelihood of an epoch but for a constant
+};
+
+/// Of artificial outages, one by one: drift with what was found less that without it.
+struct PairedDifference {
+  int count = 0;
+  double mean = 0.0;
+  double sd = 0.0;  ///< of the mean
 };
 
 struct Diagnosis {
@@ -81,6 +108,11 @@ struct Diagnosis {
   double threshold = 0.0;  ///< of the likelihood ratio, 5 % of clean recordings exceed it
   Fit before;
   Fit after;
+  PairedDifference outage_change;
+  std::vector<TwinStatistic> twins;        ///< of the configured model
+  std::vector<TwinStatistic> twins_after;  ///< of the model with what was found
+  std::optional<HeldOut> held_out;         ///< where mean effects were found
+  std::vector<std::string> rejected;       ///< found, and given up: worse on held-out blocks
   std::size_t runs = 0;
   std::vector<estimate::InnovationRecord> innovations_before;
   std::vector<estimate::InnovationRecord> innovations_after;
@@ -92,12 +124,17 @@ struct DiagnosisOptions {
   double false_alarm_probability = 0.05;  ///< of a recording in which nothing is missing
   int most_effects = 6;
   std::uint64_t seed = 1;
+  int twins = 20;  ///< of each model; 0: none
 };
 
 /// Stepwise: the mission is run; of all hypotheses beside those taken the likeliest by Bayes factor is taken where the largest
 /// likelihood ratio exceeds what chance allows; coefficients of all taken follow (Gauss-Newton), and the mission is run again
 /// without them, until nothing more exceeds. Noise is fitted first where innovations contradict theirs by more than the largest
-/// mean effect explains.
-[[nodiscard]] Diagnosis diagnose(const MissionInput& input, const DiagnosisOptions& options, const study::Progress& progress);
+/// mean effect explains. Then what was found is held against blocks that its sizes were not estimated from, and given up where
+/// it explains nothing there; and the recording against twins of its mission (twin.hpp) by the configured model and by the
+/// new one.
+/// @param simulations  the user's own, in place of the twins of the configured model
+[[nodiscard]] Diagnosis diagnose(const MissionInput& input, const DiagnosisOptions& options, const study::Progress& progress,
+                                 const std::vector<MissionInput>& simulations = {});
 
 }  // namespace coast::diagnose

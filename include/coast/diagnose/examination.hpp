@@ -34,6 +34,7 @@ struct ExaminationOptions {
   Eigen::Index draws = 400;
   Eigen::Index draws_of_disturbances = 200;  ///< of these, as many are kept interval by interval
   std::uint64_t seed = 1;
+  std::function<bool(geo::GpsTime)> counts = {};  ///< innovations at other instants say nothing; empty: all count
 };
 
 /// @param knots  of a forward pass with the layout

@@ -63,6 +63,7 @@ struct EffectPassOptions {
   Eigen::Index draws = 0;
   std::function<void(Eigen::Ref<Eigen::MatrixXd>)> fill_normal;  ///< with independent standard normal numbers
   std::function<void(double)> progress;
+  std::function<bool(geo::GpsTime)> counts = {};  ///< updates at other instants happen and say nothing; empty: all count
 };
 
 /// Walks the knots from the last to the first; `visit` is called at each with what its own updates and all behind it say. The

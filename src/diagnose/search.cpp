@@ -1,0 +1,291 @@
+#include "search.hpp"
+
+#include <Eigen/Cholesky>
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+namespace coast::diagnose {
+
+namespace {
+
+constexpr double kSettled = 0.1;       // sd that a coefficient may still move
+constexpr double kStable = 0.5;            // of a relation, from where it is believed
+constexpr double kUncertain = 0.1;         // of a likelihood ratio whose variance is that of some hundred draws
+
+/// A start that the data decide: it was found by a run that knew nothing of the effect, which may be in it. The filter is
+/// linearised about what that run found of the sensors too: with biases at their prior mean, tilts are wrong by mrad until the
+/// first manoeuvres, and the square of a tilt looks like a vertical bias that ends there.
+void loosen_start(const study::PreparedMission& mission, const estimate::SmoothedKnot& smoothed,
+                  const estimate::StateLayout& layout, MissionInput& input) {
+  constexpr double kPosition = 1.0;  // m
+  constexpr double kVelocity = 0.3;  // m/s
+  constexpr double kAttitude = 3.0;  // times the alignment's
+  ins::InitialState start = mission.start();
+  start.nav = smoothed.nav;
+  start.sd_position_n = start.sd_position_n.cwiseMax(kPosition);
+  start.sd_velocity_n = start.sd_velocity_n.cwiseMax(kVelocity);
+  if (!mission.setup().start) {
+    start.sd_attitude_n *= kAttitude;
+    if (start.gyro_bias_sd) *start.gyro_bias_sd *= kAttitude;
+  }
+  input.setup.start = start;
+  input.setup.start_sensor_errors = sensor_states_in(layout_of(input), layout, smoothed.x);
+}
+
+/// Estimate and its sd of what remains of an effect that began at some time.
+std::optional<std::pair<double, double>> at_onset(const Examination& e, const Taken& taken) {
+  const auto track = std::ranges::find(e.tracks, taken.hypothesis, &Examination::Track::hypothesis);
+  if (track == e.tracks.end() || track->t.empty()) return std::nullopt;
+  const auto at = std::ranges::lower_bound(track->t, *taken.from);
+  if (at == track->t.end()) return std::nullopt;
+  const auto k = static_cast<std::size_t>(at - track->t.begin());
+  return std::pair(track->score[k] / track->information[k], 1.0 / std::sqrt(track->information[k]));
+}
+
+}  // namespace
+
+Search::Search(const MissionInput& input, const DiagnosisOptions& options, const study::Progress& progress)
+    : options_(options), progress_(progress), input_(input), grade_(grade_of(input.setup.model)) {
+  input_.setup.filter.gate_probability = 0.0;  // what a gate refuses cannot be explained
+  input_.setup.noise_fit.reset();
+  run_again();
+  run_again();  // from a start that is loose
+  result_.grade = grade_;
+  result_.before = run_->fit();
+  result_.innovations_before = run_->solution().forward.innovations;
+  look_at_samples();
+}
+
+bool Search::step() {
+  const Examination examination = examined();
+  const bool settled = follow(examination);
+  suspicions_ = suspicions(examination, run_->hypotheses(), of_whole_mission());
+  result_.threshold = suspicions_.chance.quantile(of_catalogue());
+  const Suspicion* best = result_.findings.size() < most() ? likeliest() : nullptr;
+  const double mean_gain = best != nullptr ? 0.5 * best->likelihood_ratio : 0.0;
+  const std::optional<Proposal> form = result_.findings.size() < most() ? likeliest_form(examination) : std::nullopt;
+  const double form_gain = form ? 0.5 * form->likelihood_ratio - form->log_places : 0.0;
+  if (take_noise(examination, std::max(mean_gain, form ? form_gain + kUncertain * form->likelihood_ratio : 0.0))) {
+    run_again();
+    return true;
+  }
+  if (form && form_gain > mean_gain && try_out(*form)) return true;
+  if (best == nullptr && settled) return false;
+  if (best == nullptr) {
+    run_again();
+    return true;
+  }
+  try_out(Suspicion(*best));
+  return true;
+}
+
+Examination Search::examined(const std::function<bool(geo::GpsTime)>& counts, Eigen::Index draws) const {
+  return examine(run_->mission(), run_->layout(), run_->solution().knots, run_->hypotheses(),
+                 {.draws = draws, .seed = options_.seed, .counts = counts});
+}
+
+double Search::of_catalogue() const {
+  return std::max(0.5 * options_.false_alarm_probability,
+                  options_.false_alarm_probability - kNoiseFalseAlarm - 2.0 * kFormFalseAlarm);
+}
+
+void Search::run_again() {
+  if (run_ == nullptr) {
+    current_ = input_;
+    run_current();
+    return;
+  }
+  const std::unique_ptr<MissionRun> last = std::move(run_);
+  run_from(*last);
+}
+
+void Search::run_from(const MissionRun& last) {
+  current_ = without(taken_, input_, last.hypotheses(), last.path(), last.mission(), last.layout());
+  model_noise(current_);
+  loosen_start(last.prepared(), last.solution().smoothed.front(), last.layout(), current_);
+  run_current();
+}
+
+MissionInput Search::with_values(const std::vector<Taken>& taken) const {
+  MissionInput input = without(taken, input_, run_->hypotheses(), run_->path(), run_->mission(), run_->layout());
+  model_noise(input);
+  input.setup.start = current_.setup.start;
+  input.setup.start_sensor_errors = current_.setup.start_sensor_errors;
+  return input;
+}
+
+void Search::give_up(std::size_t index) {
+  const auto at = static_cast<std::ptrdiff_t>(index);
+  refused_.push_back(taken_[index].hypothesis);
+  taken_.erase(taken_.begin() + at);
+  result_.findings.erase(result_.findings.begin() + at);
+  run_again();
+}
+
+void Search::model_noise(MissionInput& input) const {
+  if (noise_) {
+    input.setup.model = estimate::adjusted(input.setup.model, noise_->fit.adjustment);
+    input.setup.filter = estimate::adjusted(input.setup.filter, noise_->fit.adjustment);
+  }
+  for (const AddedNoise& one : added_) one.add_to(input);
+}
+
+void Search::run_current() {
+  run_ = std::make_unique<MissionRun>(current_, grade_, suggested_, progress_);
+  ++result_.runs;
+}
+
+std::vector<Eigen::Index> Search::of_whole_mission() const {
+  std::vector<Eigen::Index> indices;
+  for (const Taken& one : taken_)
+    if (!one.from) indices.push_back(one.hypothesis);
+  return indices;
+}
+
+Movement movement(const Examination& e, const std::vector<Taken>& taken) {
+  std::vector<Eigen::Index> whole;
+  for (const Taken& one : taken)
+    if (!one.from) whole.push_back(one.hypothesis);
+  Eigen::VectorXd by, sd;
+  if (!whole.empty()) {
+    const Eigen::MatrixXd information = e.information(whole, whole);
+    const Eigen::VectorXd scale = information.diagonal().cwiseSqrt().cwiseInverse();
+    const Eigen::MatrixXd covariance =
+        scale.asDiagonal() *
+        (scale.asDiagonal() * information * scale.asDiagonal()).ldlt().solve(Eigen::MatrixXd(scale.asDiagonal()));
+    by = covariance * Eigen::VectorXd(e.score(whole));
+    sd = covariance.diagonal().cwiseSqrt();
+  }
+  Movement result;
+  Eigen::Index next = 0;
+  for (const Taken& one : taken) {
+    std::pair<double, double> move{0.0, 0.0};
+    if (!one.from) {
+      move = {by(next), sd(next)};
+      ++next;
+    } else if (const auto at = at_onset(e, one)) {
+      move = *at;
+    }
+    result.by.push_back(move.first);
+    result.sd.push_back(move.second);
+  }
+  return result;
+}
+
+bool Search::follow(const Examination& e) {
+  const Movement moved = movement(e, taken_);
+  bool settled = true;
+  for (std::size_t i = 0; i < taken_.size(); ++i) {
+    if (!(moved.sd[i] > 0.0)) continue;
+    taken_[i].value += moved.by[i];
+    result_.findings[i].sd = moved.sd[i];
+    settled = settled && std::abs(moved.by[i]) < kSettled * moved.sd[i];
+  }
+  return settled;
+}
+
+void Search::try_out(const Suspicion& s) {
+  constexpr int kHalvings = 4;
+  const double before = run_->log_likelihood();
+  const std::optional<FittedNoise> noise = std::exchange(noise_, std::nullopt);  // it may have stood for this effect
+  const double stated = noise ? before - noise->gain() : before;
+  take(s);
+  std::unique_ptr<MissionRun> start = std::move(run_);
+  for (int i = 0; i <= kHalvings; ++i, taken_.back().value *= 0.5) {
+    run_from(*start);
+    const double gained = run_->log_likelihood() - stated;
+    if (gained < 0.5 * result_.threshold) continue;
+    result_.findings.back().delta_log_likelihood = gained;
+    noise_tried_ = false;
+    return;
+  }
+  taken_.pop_back();
+  result_.findings.pop_back();
+  refused_.push_back(s.hypothesis);
+  noise_ = noise;
+  run_from(*start);
+}
+
+std::optional<Proposal> Search::likeliest_form(const Examination& examination) const {
+  std::optional<Proposal> best;
+  for (const std::optional<Proposal>& form : {strongest_line(examination), likeliest_relation(examination, *run_)}) {
+    if (!form || form->p_value > kFormFalseAlarm || form->stability < kStable || was_refused(*form)) continue;
+    if (!best || form->likelihood_ratio - 2.0 * form->log_places > best->likelihood_ratio - 2.0 * best->log_places) best = form;
+  }
+  return best;
+}
+
+bool Search::was_refused(const Proposal& form) const {
+  return std::ranges::any_of(refused_forms_, [&](const EffectPtr& e) {
+    return e->name == form.effect->name && e->site == form.effect->site && e->axes == form.effect->axes &&
+           e->relation == form.effect->relation;
+  });
+}
+
+bool Search::try_out(const Proposal& form) {
+  const double before = run_->log_likelihood();
+  const std::vector<Taken> taken = taken_;
+  const std::vector<Finding> findings = result_.findings;
+  suggested_.push_back(form.effect);
+  const std::unique_ptr<MissionRun> start = std::move(run_);
+  run_from(*start);
+  const auto first = static_cast<Eigen::Index>(run_->hypotheses().size()) - static_cast<Eigen::Index>(form.effect->axes.size());
+  for (Eigen::Index i = first; i < run_->hypotheses().size(); ++i)
+    take({.hypothesis = i, .from = {}, .likelihood_ratio = form.likelihood_ratio, .log_bayes = 0.5 * form.likelihood_ratio - form.log_places, .p_value = form.p_value});
+  static_cast<void>(follow(examined()));
+  run_again();
+  const double gained = run_->log_likelihood() - before;
+  if (gained > form.log_places - std::log(kFormFalseAlarm)) {
+    Finding& found = result_.findings[taken.size()];
+    found.delta_log_likelihood = gained;
+    if (!form.effect->relation.empty()) found.stability = form.stability;
+    return true;
+  }
+  refused_forms_.push_back(form.effect);
+  suggested_.pop_back();
+  taken_ = taken;
+  result_.findings = findings;
+  run_from(*start);
+  return false;
+}
+
+const Suspicion* Search::likeliest() const {
+  const Suspicion* best = nullptr;
+  for (const Suspicion& s : suspicions_.all)
+    if (std::ranges::find(refused_, s.hypothesis) == refused_.end() && s.p_value < of_catalogue() &&
+        (best == nullptr || s.log_bayes > best->log_bayes))
+      best = &s;
+  return best;
+}
+
+Alternative Search::alternative(const Suspicion& s, double log_odds) const {
+  const Hypothesis& h = run_->hypotheses()[s.hypothesis];
+  return {std::string(h.effect->name), std::string(name(h.effect->site)), h.axis_name(), log_odds};
+}
+
+void Search::take(const Suspicion& s) {
+  taken_.push_back({s.hypothesis, s.from, {}, s.estimate});
+  const Hypotheses& hypotheses = run_->hypotheses();
+  Finding finding{.hypothesis = hypotheses[s.hypothesis],
+                  .from = s.from,
+                  .to = {},
+                  .from_sd_s = s.from_sd_s,
+                  .value = s.estimate,
+                  .sd = s.sd,
+                  .p_value = s.p_value,
+                  .held_out_gain = {},
+                    .alternatives = {},
+                  .stability = {}};
+  for (const Suspicion& other : suspicions_.all)
+    if (other.hypothesis != s.hypothesis &&
+        (s.log_bayes - other.log_bayes < kLogOdds || s.likelihood_ratio - other.likelihood_ratio < 2.0 * kLogOdds))
+      finding.alternatives.push_back(alternative(other, std::max(s.log_bayes - other.log_bayes,
+                                                                 0.5 * (s.likelihood_ratio - other.likelihood_ratio))));
+  for (const FittedEffect& fit : beaten_)
+    if (0.5 * s.likelihood_ratio - fit.gain < kLogOdds) finding.alternatives.push_back(diagnose::alternative(fit, 0.5 * s.likelihood_ratio));
+  std::ranges::sort(finding.alternatives, {}, &Alternative::log_odds);
+  result_.findings.push_back(std::move(finding));
+}
+
+}  // namespace coast::diagnose

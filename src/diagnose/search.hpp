@@ -1,0 +1,117 @@
+#pragma once
+// The search for effects, step by step; private to the room.
+
+#include <memory>
+
+#include "form_scan.hpp"
+#include "mission_run.hpp"
+#include "noise_check.hpp"
+#include "noise_scan.hpp"
+
+namespace coast::diagnose {
+
+/// The mission with what has been taken so far, and the search's next step.
+class Search {
+ public:
+  Search(const MissionInput& input, const DiagnosisOptions& options, const study::Progress& progress);
+
+  /// @return  whether something was done that may show more
+  bool step();
+  Diagnosis finish();
+
+  [[nodiscard]] const MissionRun& run() const { return *run_; }
+  [[nodiscard]] const MissionInput& modelled() const { return current_; }
+  [[nodiscard]] const std::vector<Taken>& taken() const { return taken_; }
+  [[nodiscard]] bool has_found_anything() const {
+    return !taken_.empty() || noise_ || !added_.empty() || !result_.noise.empty();
+  }
+  /// The mission with other values of what was taken, noise and start as they are.
+  [[nodiscard]] MissionInput with_values(const std::vector<Taken>& taken) const;
+  /// What the last run says. @param counts  nothing: all innovations
+  [[nodiscard]] Examination examined(const std::function<bool(geo::GpsTime)>& counts = {}, Eigen::Index draws = 400) const;
+  /// Takes an effect back, and runs again.
+  void give_up(std::size_t index);
+  void set_held_out(std::size_t index, double gain) { result_.findings[index].held_out_gain = gain; }
+
+ private:
+  [[nodiscard]] double of_catalogue() const;
+  [[nodiscard]] std::size_t most() const { return static_cast<std::size_t>(options_.most_effects); }
+  void run_again();
+  /// @param last  a run whose trajectory the effects are taken out along
+  void run_from(const MissionRun& last);
+  void run_current();
+  void model_noise(MissionInput& input) const;
+
+  // Random effects, converters, and noise that is stated (search_noise.cpp).
+  /// What converters do is seen without a filter; whether it matters is not.
+  void look_at_samples();
+  /// Noise first where it explains more than the likeliest mean effect: a fit of what is stated, or a random effect beside it.
+  bool take_noise(const Examination& examination, double mean_gain);
+  /// The likeliest random effect of an axis, and on the same axis the others, whose gains are set against each other.
+  bool take_random_effect(const Examination& examination, double to_beat);
+  [[nodiscard]] bool was_refused(const AddedNoise& noise) const;
+  /// @param fits  the first is taken
+  void describe(const std::vector<FittedEffect>& fits, double p_value);
+
+  // Mean effects: of the catalogue, and such that the recording suggests.
+  [[nodiscard]] const Suspicion* likeliest() const;
+  /// A line or a relation that no catalogue has, where chance does not explain it.
+  [[nodiscard]] std::optional<Proposal> likeliest_form(const Examination& examination) const;
+  [[nodiscard]] bool was_refused(const Proposal& form) const;
+  /// Takes an effect and runs without it. Where the mission is not linear over the effect's size the first estimate is too
+  /// large: it is halved until the likelihood rises. One that never does so is refused for good.
+  void try_out(const Suspicion& s);
+  /// Its coefficients are found together with those that are taken already.
+  bool try_out(const Proposal& form);
+  void take(const Suspicion& s);
+  [[nodiscard]] Alternative alternative(const Suspicion& s, double log_odds) const;
+  [[nodiscard]] std::vector<Eigen::Index> of_whole_mission() const;
+  /// Coefficients taken follow what the run without them still shows. @return whether they rest
+  bool follow(const Examination& e);
+
+  // For people (search_result.cpp).
+  /// An effect that is taken back later by an equal jump the other way lasted until then: a wrong fix.
+  void join_entries_with_exits();
+  /// Sine and cosine become amplitude and phase.
+  void join_quadratures();
+  void describe_what_was_not_found();
+
+  DiagnosisOptions options_;
+  const study::Progress& progress_;
+  MissionInput input_;
+  Grade grade_;
+  MissionInput current_;
+  std::unique_ptr<MissionRun> run_;
+  std::vector<Taken> taken_;
+  std::vector<Eigen::Index> refused_;
+  Suspicions suspicions_;
+  std::optional<FittedNoise> noise_;
+  std::optional<estimate::NoiseFit> last_fit_;
+  bool noise_tried_ = false;
+  std::vector<EffectPtr> suggested_;
+  std::vector<EffectPtr> refused_forms_;
+  std::vector<AddedNoise> added_;
+  std::vector<AddedNoise> refused_noise_;
+  std::vector<FittedEffect> beaten_;  ///< random effects that explain less than the mean effect that is likeliest
+  std::vector<NoiseFinding> random_effects_;
+  Diagnosis result_;
+};
+
+/// By how much the values that were taken move by what a run without them still shows, and their standard deviations.
+struct Movement {
+  std::vector<double> by, sd;
+};
+[[nodiscard]] Movement movement(const Examination& e, const std::vector<Taken>& taken);
+
+[[nodiscard]] Alternative alternative(const FittedEffect& fit, double gain);
+[[nodiscard]] inline std::string axis_letter(int axis) {
+  return {static_cast<char>('x' + axis)};
+}
+
+// Alternatives are told where the data alone, or with what is plausible, hold them for more than a thousandth as likely.
+inline constexpr double kLogOdds = 7.0;
+// Of the false alarms that are allowed the catalogue has what these leave.
+inline constexpr double kNoiseFalseAlarm = 0.01;  // random effects
+inline constexpr double kFormFalseAlarm = 0.005;  // lines, and relations
+
+}  // namespace coast::diagnose

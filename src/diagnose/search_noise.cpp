@@ -1,0 +1,134 @@
+// The part of the search that looks at noise.
+
+#include <algorithm>
+#include <cmath>
+
+#include "search.hpp"
+
+namespace coast::diagnose {
+
+namespace {
+
+constexpr double kContradicted = 4.0;    // sd of the innovations' variance or correlation, from where noise is fitted
+constexpr double kLeastOfSamples = 3.0;  // logarithm of the likelihood ratio, from where a converter's mark matters
+constexpr std::size_t kMostRandom = 4;
+
+const NoiseSuspicion* strongest(const NoiseSuspicions& suspected, const NoiseEffect& effect, const AddedNoise& beside) {
+  const NoiseSuspicion* best = nullptr;
+  for (const NoiseSuspicion& s : suspected.all)
+    if (s.noise.effect == &effect && effect.site == beside.effect->site && s.noise.axis == beside.axis &&
+        (best == nullptr || s.likelihood_ratio > best->likelihood_ratio))
+      best = &s;
+  return best;
+}
+
+}  // namespace
+
+void Search::look_at_samples() {
+  for (const SampleEffect& effect : sample_catalogue())
+    for (int axis = 0; axis < 3; ++axis) {
+      const std::optional<double> found = effect.find(axis_series(input_, effect.site, axis));
+      if (!found) continue;
+      const double before = run_->log_likelihood();
+      MissionInput stated = input_;
+      effect.model(input_, effect.site, axis, *found);
+      run_again();
+      const double gained = run_->log_likelihood() - before;
+      if (gained < kLeastOfSamples) {
+        input_ = std::move(stated);
+        run_again();
+        continue;
+      }
+      result_.noise.push_back({.name = std::string(effect.name),
+                               .sensor = std::string(name(effect.site)),
+                               .axis = axis_letter(axis),
+                               .parameter = std::string(effect.parameter),
+                               .unit = std::string(effect.unit),
+                               .value = *found,
+                               .sd = 0.0,
+                               .delta_log_likelihood = gained,
+                               .p_value = std::exp(-gained),
+                               .place = NoiseFinding::Place::kEffects,
+                               .meaning = std::string(effect.meaning),
+                               .equation = std::string(effect.equation),
+                               .separating_manoeuvre = std::string(effect.separating_manoeuvre)});
+    }
+}
+
+bool Search::take_noise(const Examination& examination, double mean_gain) {
+  std::optional<FittedNoise> stated;
+  if (!noise_ && !noise_tried_ && contradiction(run_->solution().forward.innovations) > kContradicted) {
+    noise_tried_ = true;
+    stated = fitted_noise(run_->prepared(), last_fit_, progress_);
+    if (stated) last_fit_ = stated->fit;
+  }
+  const double stated_gain = stated ? stated->gain() : 0.0;
+  if (added_.size() < kMostRandom && take_random_effect(examination, std::max(mean_gain, stated_gain))) return true;
+  if (!stated || stated_gain <= mean_gain) return false;
+  noise_ = std::move(stated);
+  return true;
+}
+
+bool Search::take_random_effect(const Examination& examination, double to_beat) {
+  beaten_.clear();
+  const NoiseSuspicions suspected = noise_suspicions(examination, *run_);
+  const NoiseSuspicion* first = nullptr;
+  for (const NoiseSuspicion& s : suspected.all)
+    if (s.p_value < kNoiseFalseAlarm && !was_refused(s.noise) &&
+        (first == nullptr || s.likelihood_ratio > first->likelihood_ratio))
+      first = &s;
+  if (first == nullptr) return false;
+  std::vector<FittedEffect> fits;
+  for (const NoiseEffect& effect : noise_catalogue())
+    if (const NoiseSuspicion* s = strongest(suspected, effect, first->noise))
+      fits.push_back(fitted_effect(s->noise, current_, run_->layout(), run_->log_likelihood()));
+  std::ranges::sort(fits, std::ranges::greater{}, &FittedEffect::gain);
+  const FittedEffect& best = fits.front();
+  const double p_value = suspected.chance.p_value(2.0 * std::max(0.0, best.gain));
+  if (p_value > kNoiseFalseAlarm || best.gain <= to_beat) {
+    if (p_value > kNoiseFalseAlarm) refused_noise_.push_back(first->noise);
+    beaten_ = std::move(fits);
+    return false;
+  }
+  describe(fits, p_value);
+  added_.push_back(best.noise);
+  return true;
+}
+
+bool Search::was_refused(const AddedNoise& noise) const {
+  return std::ranges::any_of(refused_noise_, [&](const AddedNoise& other) {
+    return other.axis == noise.axis && other.effect->site == noise.effect->site;
+  });
+}
+
+Alternative alternative(const FittedEffect& fit, double gain) {
+  return {std::string(fit.noise.effect->name), std::string(name(fit.noise.effect->site)), axis_letter(fit.noise.axis),
+          gain - fit.gain};
+}
+
+void Search::describe(const std::vector<FittedEffect>& fits, double p_value) {
+  const FittedEffect& f = fits.front();
+  NoiseFinding finding{.name = std::string(f.noise.effect->name),
+                       .sensor = std::string(name(f.noise.effect->site)),
+                       .axis = axis_letter(f.noise.axis),
+                       .parameter = std::string(f.noise.effect->parameter),
+                       .unit = std::string(f.noise.effect->unit),
+                       .value = f.noise.root,
+                       .sd = f.noise.root * f.log_sd,
+                       .delta_log_likelihood = f.gain,
+                       .p_value = p_value,
+                       .place = f.noise.effect->level ? NoiseFinding::Place::kEffects : NoiseFinding::Place::kErrorModel,
+                       .time_s = f.noise.time,
+                       .meaning = std::string(f.noise.effect->meaning),
+                       .equation = std::string(f.noise.effect->equation),
+                       .separating_manoeuvre = std::string(f.noise.effect->separating_manoeuvre)};
+  for (std::size_t i = 1; i < fits.size(); ++i)
+    if (f.gain - fits[i].gain < kLogOdds) finding.alternatives.push_back(diagnose::alternative(fits[i], f.gain));
+  for (const Suspicion& s : suspicions_.all)
+    if (f.gain - 0.5 * s.likelihood_ratio < kLogOdds)
+      finding.alternatives.push_back(alternative(s, f.gain - 0.5 * s.likelihood_ratio));
+  std::ranges::sort(finding.alternatives, {}, &Alternative::log_odds);
+  random_effects_.push_back(std::move(finding));
+}
+
+}  // namespace coast::diagnose

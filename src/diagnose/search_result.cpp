@@ -1,0 +1,100 @@
+// What the search found, in the words and the order that people want.
+
+#include <algorithm>
+#include <cmath>
+
+#include "search.hpp"
+
+namespace coast::diagnose {
+
+namespace {
+
+PairedDifference paired_difference(const std::vector<double>& before, const std::vector<double>& after) {
+  PairedDifference d;
+  if (before.size() != after.size() || before.size() < 2) return d;
+  d.count = static_cast<int>(before.size());
+  double sum = 0.0, squares = 0.0;
+  for (std::size_t i = 0; i < before.size(); ++i) {
+    sum += after[i] - before[i];
+    squares += (after[i] - before[i]) * (after[i] - before[i]);
+  }
+  const double n = d.count;
+  d.mean = sum / n;
+  d.sd = std::sqrt(std::max(0.0, squares - n * d.mean * d.mean) / (n * (n - 1.0)));
+  return d;
+}
+
+}  // namespace
+
+Diagnosis Search::finish() {
+  describe_what_was_not_found();
+  if (noise_) std::ranges::copy(noise_->findings, std::back_inserter(result_.noise));
+  std::ranges::move(random_effects_, std::back_inserter(result_.noise));
+  for (std::size_t i = 0; i < result_.findings.size(); ++i) result_.findings[i].value = taken_[i].value;
+  join_entries_with_exits();
+  join_quadratures();
+  result_.suggested.insert(result_.suggested.end(), suggested_.begin(), suggested_.end());
+  result_.after = run_->fit();
+  result_.outage_change = paired_difference(result_.before.outages_m, result_.after.outages_m);
+  result_.innovations_after = run_->solution().forward.innovations;
+  result_.modelled = std::move(current_);
+  return std::move(result_);
+}
+
+void Search::join_entries_with_exits() {
+  constexpr double kEqual = 4.0;  // sd of the sum
+  std::vector<Finding>& all = result_.findings;
+  for (std::size_t i = 0; i < all.size(); ++i)
+    for (std::size_t j = 0; j < all.size(); ++j) {
+      Finding& entry = all[i];
+      const Finding& exit = all[j];
+      if (entry.to || exit.to || entry.hypothesis.effect != exit.hypothesis.effect ||
+          entry.hypothesis.axis != exit.hypothesis.axis || !entry.from || !exit.from || !(*entry.from < *exit.from) ||
+          std::abs(entry.value + exit.value) > kEqual * std::hypot(entry.sd, exit.sd))
+        continue;
+      entry.to = exit.from;
+      entry.delta_log_likelihood += exit.delta_log_likelihood;
+      all.erase(all.begin() + static_cast<std::ptrdiff_t>(j));
+      i = 0;
+      j = 0;
+    }
+}
+
+void Search::join_quadratures() {
+  std::vector<Finding>& all = result_.findings;
+  for (std::size_t i = 0; i + 1 < all.size(); ++i) {
+    const Effect& effect = *all[i].hypothesis.effect;
+    if (effect.name != "harmonic_disturbance" || all[i + 1].hypothesis.effect != &effect) continue;
+    Finding& sine = all[i];
+    const Finding& cosine = all[i + 1];
+    const double phase = effect.fixed[1].value + std::atan2(cosine.value, sine.value);
+    const int axis = effect.axes.front().front() - 'x';
+    result_.suggested.push_back(harmonic_disturbance(effect.site, axis, effect.fixed[0].value, phase));
+    sine.hypothesis.effect = result_.suggested.back().get();
+    sine.value = std::hypot(sine.value, cosine.value);
+    sine.sd = std::max(sine.sd, cosine.sd);
+    all.erase(all.begin() + static_cast<std::ptrdiff_t>(i) + 1);
+  }
+}
+
+void Search::describe_what_was_not_found() {
+  const Hypotheses& hypotheses = run_->hypotheses();
+  std::vector<bool> told(static_cast<std::size_t>(hypotheses.size()), false);
+  for (const Taken& one : taken_) told[static_cast<std::size_t>(one.hypothesis)] = true;
+  for (const Suspicion& s : suspicions_.all) {
+    if (told[static_cast<std::size_t>(s.hypothesis)]) continue;
+    told[static_cast<std::size_t>(s.hypothesis)] = true;
+    result_.detectable_not_found.push_back({hypotheses[s.hypothesis], minimal_detectable(s.sd, result_.threshold)});
+  }
+  for (Eigen::Index i = 0; i < hypotheses.size(); ++i)
+    if (!told[static_cast<std::size_t>(i)])
+      result_.not_observable.push_back({hypotheses[i], "of what is plausible this mission shows nothing"});
+  for (const Effect& effect : catalogue()) {
+    const char* reason = nullptr;
+    if (effect.needs_reference) reason = "no innovation changes: only a reference could show it";
+    if (effect.needs_temperature && run_->mission().imu.temperature.empty()) reason = "no temperature was recorded";
+    if (reason != nullptr) result_.not_observable.push_back({{&effect, 0, 0.0}, reason});
+  }
+}
+
+}  // namespace coast::diagnose

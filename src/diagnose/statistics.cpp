@@ -1,0 +1,177 @@
+#include "statistics.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "noise_effects/noise_effects.hpp"
+#include "search.hpp"
+
+namespace coast::diagnose {
+
+namespace {
+
+/// A quantity that splits a mission into a half with more and a half with less of it.
+struct Regime {
+  const char* name;
+  double (*of)(const Signals&);
+};
+constexpr std::array<Regime, 6> kRegimes{{
+    {"speed", [](const Signals& s) { return s.speed; }},
+    {"turn rate", [](const Signals& s) { return s.omega.norm(); }},
+    {"acceleration", [](const Signals& s) { return std::abs(s.f.norm() - geo::kStandardGravity); }},
+    {"vibration", [](const Signals& s) { return s.vibration.sum(); }},
+    {"temperature", [](const Signals& s) { return s.temperature; }},
+    {"time", [](const Signals& s) { return s.elapsed; }},
+}};
+
+struct RegimeSeries {
+  std::vector<geo::GpsTime> t;
+  std::array<std::vector<double>, kRegimes.size()> values;
+};
+
+/// Means over tenths of seconds, as innovations come.
+RegimeSeries regimes_of(const MissionRun& run) {
+  constexpr double kStep = 0.1;  // s
+  RegimeSeries series;
+  run.for_each_sample([&](std::size_t, geo::GpsTime t, const Signals& signals) {
+    if (!series.t.empty() && t - series.t.back() < kStep) return;
+    series.t.push_back(t);
+    for (std::size_t i = 0; i < kRegimes.size(); ++i) series.values[i].push_back(kRegimes[i].of(signals));
+  });
+  return series;
+}
+
+struct Mean {
+  double sum = 0.0;
+  double count = 0.0;
+  [[nodiscard]] double value() const { return count > 0.0 ? sum / count : 0.0; }
+};
+
+void add_innovations(const MissionRun& run, std::vector<Statistic>& figures) {
+  std::array<Mean, 2> nis;
+  std::array<double, 3> products{}, squares{}, before{};
+  for (const estimate::InnovationRecord& r : run.solution().forward.innovations) {
+    const bool position = estimate::is_position(r.kind);
+    if (!r.used || (!position && r.kind != estimate::UpdateKind::kGnssVelocity)) continue;
+    Mean& mean = nis[position ? 0 : 1];
+    mean.sum += r.nis;
+    mean.count += r.dof;
+    if (!position) continue;
+    for (std::size_t i = 0; i < 3; ++i) {
+      const double u = r.nu(static_cast<Eigen::Index>(i)) / r.sd(static_cast<Eigen::Index>(i));
+      products[i] += u * before[i];
+      squares[i] += u * u;
+      before[i] = u;
+    }
+  }
+  figures.push_back({"NIS of positions", nis[0].value()});
+  figures.push_back({"NIS of velocities", nis[1].value()});
+  for (std::size_t i = 0; i < 3; ++i)
+    figures.push_back({fmt::format("correlation of successive innovations, {}", "NED"[i]),
+                       squares[i] > 0.0 ? products[i] / squares[i] : 0.0});
+}
+
+void add_regimes(const MissionRun& run, std::vector<Statistic>& figures) {
+  const RegimeSeries series = regimes_of(run);
+  for (std::size_t i = 0; i < kRegimes.size(); ++i) {
+    std::vector<double> sorted = series.values[i];
+    double difference = 0.0;
+    if (!sorted.empty()) {
+      const auto middle = sorted.begin() + static_cast<std::ptrdiff_t>(sorted.size() / 2);
+      std::ranges::nth_element(sorted, middle);
+      std::array<Mean, 2> nis;
+      for (const estimate::InnovationRecord& r : run.solution().forward.innovations) {
+        if (!r.used) continue;
+        const auto at = std::min(std::ranges::lower_bound(series.t, r.t), series.t.end() - 1);
+        Mean& mean = nis[series.values[i][static_cast<std::size_t>(at - series.t.begin())] > *middle ? 1 : 0];
+        mean.sum += r.nis;
+        mean.count += r.dof;
+      }
+      difference = nis[1].value() - nis[0].value();
+    }
+    figures.push_back({fmt::format("NIS with more {} less that with less", kRegimes[i].name), difference});
+  }
+}
+
+/// Power of the disturbances of each axis as a Gauss-Markov process would bring about, over what chance has: their Allan curve,
+/// read at two averaging times.
+void add_disturbances(const Disturbances& d, std::vector<Statistic>& figures) {
+  constexpr std::array<double, 2> kTimes{5.0, 100.0};
+  for (std::size_t axis = 0; axis < kAxes; ++axis)
+    for (const double time : kTimes) {
+      const Eigen::ArrayXf power = gauss_markov_power(d, d.score[axis], time);
+      const float by_chance = power.tail(power.size() - 1).mean();
+      figures.push_back({fmt::format("wandering of {} {} over {:g} s", axis < 3 ? "gyro" : "accel", axis_letter(static_cast<int>(axis % 3)), time),
+                         by_chance > 0.0F ? std::log(static_cast<double>(power(0)) / static_cast<double>(by_chance)) : 0.0});
+    }
+}
+
+double quantile(std::vector<double> sorted, double p) {
+  const double at = p * static_cast<double>(sorted.size() - 1);
+  const auto low = static_cast<std::size_t>(at);
+  const std::size_t high = std::min(low + 1, sorted.size() - 1);
+  return sorted[low] + (at - static_cast<double>(low)) * (sorted[high] - sorted[low]);
+}
+
+struct Spread {
+  double mean = 0.0;
+  double sd = 0.0;
+  [[nodiscard]] double away(double value) const { return sd > 0.0 ? std::abs(value - mean) / sd : 0.0; }
+};
+/// @param without  a twin that is left out; beyond their number: none
+Spread spread_of(const std::vector<std::vector<Statistic>>& twins, std::size_t figure, std::size_t without) {
+  double sum = 0.0, squares = 0.0, count = 0.0;
+  for (std::size_t i = 0; i < twins.size(); ++i) {
+    if (i == without) continue;
+    sum += twins[i][figure].value;
+    squares += twins[i][figure].value * twins[i][figure].value;
+    count += 1.0;
+  }
+  const double mean = sum / count;
+  return {mean, std::sqrt(std::max(0.0, (squares - count * mean * mean) / (count - 1.0)))};
+}
+
+}  // namespace
+
+std::vector<Statistic> statistics_of(const MissionRun& run, const Examination& examination) {
+  std::vector<Statistic> figures;
+  add_innovations(run, figures);
+  add_regimes(run, figures);
+  add_disturbances(examination.disturbances, figures);
+  double largest = 0.0;
+  for (const Suspicion& s : suspicions(examination, run.hypotheses(), {}).all) largest = std::max(largest, s.likelihood_ratio);
+  figures.push_back({"largest sigma of all effects", std::sqrt(largest)});
+  figures.push_back({"outages of 20 s, m", run.fit().outage_rms_m});
+  return figures;
+}
+
+std::vector<TwinStatistic> against(const std::vector<Statistic>& real, const std::vector<std::vector<Statistic>>& twins) {
+  std::vector<TwinStatistic> result;
+  if (twins.size() < 3) return result;
+  std::vector<double> farthest(twins.size(), 0.0);
+  for (std::size_t j = 0; j < real.size(); ++j)
+    for (std::size_t i = 0; i < twins.size(); ++i)
+      farthest[i] = std::max(farthest[i], spread_of(twins, j, i).away(twins[i][j].value));
+  for (std::size_t j = 0; j < real.size(); ++j) {
+    std::vector<double> values;
+    for (const std::vector<Statistic>& one : twins) values.push_back(one[j].value);
+    std::ranges::sort(values);
+    const double away = spread_of(twins, j, twins.size()).away(real[j].value);
+    const auto as_far = static_cast<double>(std::ranges::count_if(farthest, [&](double f) { return f >= away; }));
+    result.push_back({real[j].name, real[j].value, quantile(values, 0.05), quantile(values, 0.5), quantile(values, 0.95),
+                      (1.0 + as_far) / (1.0 + static_cast<double>(twins.size()))});
+  }
+  return result;
+}
+
+std::vector<Statistic> statistics_of(const MissionInput& input, std::uint64_t seed) {
+  DiagnosisOptions options;
+  options.seed = seed;
+  const Search search(input, options, {});
+  return statistics_of(search.run(), search.examined());
+}
+
+}  // namespace coast::diagnose

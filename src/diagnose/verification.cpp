@@ -1,0 +1,83 @@
+#include "verification.hpp"
+
+#include <cmath>
+
+namespace coast::diagnose {
+
+namespace {
+
+constexpr double kBlock = 30.0;  // s: longer than innovations are correlated
+
+/// Blocks of the mission from its first fix.
+class Blocks {
+ public:
+  explicit Blocks(const MissionInput& input) : start_(input.gnss.fixes.front().t) {
+    count_ = static_cast<std::size_t>(std::max(0.0, input.gnss.fixes.back().t - start_) / kBlock) + 1;
+  }
+  [[nodiscard]] std::size_t of(geo::GpsTime t) const {
+    return static_cast<std::size_t>(std::clamp((t - start_) / kBlock, 0.0, static_cast<double>(count_ - 1)));
+  }
+  [[nodiscard]] std::size_t count() const { return count_; }
+
+ private:
+  geo::GpsTime start_;
+  std::size_t count_ = 0;
+};
+
+/// Log-likelihood of every block but for a constant, by a forward run; correlations between components are left out.
+std::vector<double> log_likelihoods(const MissionInput& input, const Blocks& blocks) {
+  std::vector<double> sums(blocks.count(), 0.0);
+  for (const estimate::InnovationRecord& r : forward(input).innovations) {
+    if (!r.used) continue;
+    double log_det = 0.0;
+    for (int i = 0; i < r.dof && i < 3; ++i) log_det += 2.0 * std::log(r.sd(i));
+    sums[blocks.of(r.t)] -= 0.5 * (r.nis + log_det);
+  }
+  return sums;
+}
+
+}  // namespace
+
+Verification verify(const Search& search) {
+  const Blocks blocks(search.modelled());
+  std::vector<Taken> none;
+  const std::vector<double> without = log_likelihoods(search.with_values(none), blocks);
+  std::vector<double> with(blocks.count(), 0.0);
+  Verification result;
+  result.gain.assign(search.taken().size(), 0.0);
+  for (std::size_t fold = 0; fold < 2; ++fold) {
+    const Examination examination =
+        search.examined([&](geo::GpsTime t) { return blocks.of(t) % 2 != fold; }, 0);
+    std::vector<Taken> values = search.taken();
+    const Movement moved = movement(examination, values);
+    for (std::size_t i = 0; i < values.size(); ++i) values[i].value += moved.by[i];
+    const std::vector<double> all = log_likelihoods(search.with_values(values), blocks);
+    for (std::size_t b = fold; b < blocks.count(); b += 2) with[b] = all[b];
+    for (std::size_t i = 0; i < values.size(); ++i) {
+      std::vector<Taken> others = values;
+      others.erase(others.begin() + static_cast<std::ptrdiff_t>(i));
+      const std::vector<double> less = log_likelihoods(search.with_values(others), blocks);
+      for (std::size_t b = fold; b < blocks.count(); b += 2) result.gain[i] += all[b] - less[b];
+    }
+  }
+  HeldOut& h = result.all;
+  h.blocks = static_cast<int>(blocks.count());
+  double squares = 0.0;
+  double before = 0.0;
+  for (std::size_t b = 0; b < blocks.count(); ++b) {
+    const double gain = with[b] - without[b];
+    h.gain += gain;
+    squares += gain * gain;
+    before += without[b];
+    if (gain > 0.0) h.better += 1.0;
+  }
+  const auto count = static_cast<double>(blocks.count());
+  h.gain_sd = count > 1.0 ? std::sqrt(std::max(0.0, squares - h.gain * h.gain / count) * count / (count - 1.0)) : 0.0;
+  h.better /= count;
+  const auto epochs = static_cast<double>(search.modelled().gnss.fixes.size());
+  h.before_per_epoch = before / epochs;
+  h.after_per_epoch = (before + h.gain) / epochs;
+  return result;
+}
+
+}  // namespace coast::diagnose
