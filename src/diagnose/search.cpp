@@ -63,14 +63,20 @@ bool Search::step() {
   suspicions_ = suspicions(examination, run_->hypotheses(), of_whole_mission());
   result_.threshold = suspicions_.chance.quantile(of_catalogue());
   const Suspicion* best = result_.findings.size() < most() ? likeliest() : nullptr;
-  const double mean_gain = best != nullptr ? 0.5 * best->likelihood_ratio : 0.0;
+  double mean_gain = 0.0;  // of the likeliest; what is taken weighs what is plausible too
+  if (best != nullptr)
+    for (const Suspicion& s : suspicions_.all)
+      if (!was_refused(s)) mean_gain = std::max(mean_gain, 0.5 * s.likelihood_ratio);
   const std::optional<Proposal> form = result_.findings.size() < most() ? likeliest_form(examination) : std::nullopt;
-  const double form_gain = form ? 0.5 * form->likelihood_ratio - form->log_places : 0.0;
-  if (take_noise(examination, std::max(mean_gain, form ? form_gain + kUncertain * form->likelihood_ratio : 0.0))) {
+  const double form_gain = form ? (0.5 + kUncertain) * form->likelihood_ratio - form->log_places : 0.0;
+  if (take_noise(examination, std::max(mean_gain, form_gain))) {
     run_again();
     return true;
   }
-  if (form && form_gain > mean_gain && try_out(*form)) return true;
+  if (form && form_gain > mean_gain) {
+    try_out(*form, mean_gain);
+    return true;
+  }
   if (best == nullptr && settled) return false;
   if (best == nullptr) {
     run_again();
@@ -223,7 +229,7 @@ bool Search::was_refused(const Proposal& form) const {
   });
 }
 
-bool Search::try_out(const Proposal& form) {
+void Search::try_out(const Proposal& form, double to_beat) {
   const double before = run_->log_likelihood();
   const std::vector<Taken> taken = taken_;
   const std::vector<Finding> findings = result_.findings;
@@ -236,24 +242,27 @@ bool Search::try_out(const Proposal& form) {
   static_cast<void>(follow(examined()));
   run_again();
   const double gained = run_->log_likelihood() - before;
-  if (gained > form.log_places - std::log(kFormFalseAlarm)) {
+  if (gained - form.log_places > std::max(to_beat, -std::log(kFormFalseAlarm))) {
     Finding& found = result_.findings[taken.size()];
     found.delta_log_likelihood = gained;
     if (!form.effect->relation.empty()) found.stability = form.stability;
-    return true;
+    return;
   }
   refused_forms_.push_back(form.effect);
   suggested_.pop_back();
   taken_ = taken;
   result_.findings = findings;
   run_from(*start);
-  return false;
+}
+
+bool Search::was_refused(const Suspicion& s) const {
+  return std::ranges::find(refused_, s.hypothesis) != refused_.end();
 }
 
 const Suspicion* Search::likeliest() const {
   const Suspicion* best = nullptr;
   for (const Suspicion& s : suspicions_.all)
-    if (std::ranges::find(refused_, s.hypothesis) == refused_.end() && s.p_value < of_catalogue() &&
+    if (!was_refused(s) && s.p_value < of_catalogue() &&
         (best == nullptr || s.log_bayes > best->log_bayes))
       best = &s;
   return best;

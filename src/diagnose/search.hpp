@@ -57,12 +57,14 @@ class Search {
   [[nodiscard]] const Suspicion* likeliest() const;
   /// A line or a relation that no catalogue has, where chance does not explain it.
   [[nodiscard]] std::optional<Proposal> likeliest_form(const Examination& examination) const;
+  [[nodiscard]] bool was_refused(const Suspicion& s) const;
   [[nodiscard]] bool was_refused(const Proposal& form) const;
   /// Takes an effect and runs without it. Where the mission is not linear over the effect's size the first estimate is too
   /// large: it is halved until the likelihood rises. One that never does so is refused for good.
   void try_out(const Suspicion& s);
-  /// Its coefficients are found together with those that are taken already.
-  bool try_out(const Proposal& form);
+  /// Its coefficients are found together with those that are taken already. Refused for good where it does not explain more than
+  /// the likeliest effect that has a name.
+  void try_out(const Proposal& form, double to_beat);
   void take(const Suspicion& s);
   [[nodiscard]] Alternative alternative(const Suspicion& s, double log_odds) const;
   [[nodiscard]] std::vector<Eigen::Index> of_whole_mission() const;
