@@ -2,65 +2,103 @@
 
 import glob
 import json
+import math
+import os
 import sys
 
 
+
+def same_axis(effect, truth):
+    if effect["name"].startswith("gnss_sd") or effect["name"].startswith("gnss_corr"):
+        return True  # of all axes alike
+    return effect["axis"] == truth["axis"]
+
+
 def found_as(effect, truth):
-    return effect["name"] == truth["name"] and effect["sensor"] == truth["sensor"] and effect["axis"] == truth["axis"]
+    return effect["name"] == truth["name"] and effect["sensor"] == truth["sensor"] and same_axis(effect, truth)
 
 
 def among(effect, truth):
     return found_as(effect, truth) or any(found_as(other, truth) for other in effect["confounded_with"])
 
 
-def score(case):
-    truth, effects = case["key"]["effects"][0], case["diagnosis"]["effects"]
-    s = {"name": truth["name"], "axis": truth["axis"], "detected": bool(effects), "first": False, "named": False, "deviation": None,
-         "extra": max(0, len(effects) - 1)}
-    if effects:
-        s["first"] = found_as(effects[0], truth)
-        s["named"] = among(effects[0], truth)
-        s["said"] = f'{effects[0]["name"]} {effects[0]["axis"]}'
-        for e in effects:
-            if found_as(e, truth):
-                p = e["parameters"][0]
-                s["deviation"] = (p["value"] - truth["value"]) / p["std"]
-                if truth["t_start_s"] is not None:
-                    s["onset_s"] = e["t_start_s"] - truth["t_start_s"]
-                    s["onset_std_s"] = e.get("t_start_std_s")
-                break
+def score(truth, effects):
+    s = {"name": truth["name"], "detected": bool(effects), "first": False, "named": False, "site": False, "relation": None,
+         "deviation": None, "extra": max(0, len(effects) - 1), "held_out": None}
+    if not effects:
+        return s
+    first = effects[0]
+    s["first"], s["named"] = found_as(first, truth), among(first, truth)
+    s["site"] = first["sensor"] == truth["sensor"] and same_axis(first, truth)
+    s["said"] = f'{first["name"]} {first.get("relation", first["axis"])}'
+    gains = [e["held_out_gain"] for e in effects if "held_out_gain" in e]
+    s["held_out"] = min(gains) > 0.0 if gains else None
+    if truth.get("relation"):
+        s["relation"] = first.get("relation") in (truth["relation"], truth["relation"].replace("omega*", f'omega_{truth["axis"]}*'))
+    for e in effects:
+        if found_as(e, truth):
+            p = e["parameters"][0]
+            if p.get("std"):
+                size = abs(truth["value"]) if e["name"] == "harmonic_disturbance" else truth["value"]
+                s["deviation"] = (p["value"] - size) / p["std"]
+            if truth["t_start_s"] is not None:
+                s["onset_s"] = e["t_start_s"] - truth["t_start_s"]
+                s["onset_std_s"] = e.get("t_start_std_s")
+            break
     return s
 
 
 def share(values):
-    values = list(values)
+    values = [v for v in values if v is not None]
     return {"of": len(values), "share": sum(values) / len(values)} if values else {"of": 0, "share": None}
 
 
-def main():
-    cases = []
-    for path in sorted(glob.glob(f"{sys.argv[1]}/*.json")):
-        with open(path) as file:
-            cases.append(json.load(file))
-    clean = [c for c in cases if not c["key"]["effects"]]
-    result = {"clean": {"of": len(clean), "raised": sum(bool(c["diagnosis"]["effects"]) for c in clean)}, "strengths": {}, "effects": {}}
-    scored = [(c["key"]["strength"], score(c)) for c in cases if c["key"]["effects"]]
-    for strength in sorted({k for k, _ in scored}):
-        here = [s for k, s in scored if k == strength]
-        hits = [s for s in here if s["detected"]]
-        deviations = [s["deviation"] for s in hits if s["deviation"] is not None]
-        onsets = [s for s in hits if s.get("onset_s") is not None]
-        result["strengths"][f"{strength:g}"] = {
-            "detected": share(s["detected"] for s in here), "right_name_first": share(s["first"] for s in hits),
-            "right_name_among_alternatives": share(s["named"] for s in hits), "nothing_else": share(s["extra"] == 0 for s in hits),
-            "inside_95": share(abs(d) < 1.96 for d in deviations), "onset_within_2_s": share(abs(s["onset_s"]) <= 2.0 for s in onsets)}
+def table(scored):
+    hits = [s for s in scored if s["detected"]]
+    onsets = [s for s in hits if s.get("onset_s") is not None]
+    return {"detected": share(s["detected"] for s in scored), "right_name_first": share(s["first"] for s in hits),
+            "right_name_among_alternatives": share(s["named"] for s in hits), "sensor_and_axis": share(s["site"] for s in hits),
+            "nothing_else": share(s["extra"] == 0 for s in hits), "held_out_better": share(s["held_out"] for s in hits),
+            "inside_95": share(abs(s["deviation"]) < 1.96 for s in hits if s["deviation"] is not None),
+            "onset_inside_95": share(abs(s["onset_s"]) <= 1.96 * s["onset_std_s"] for s in onsets if s["onset_std_s"] is not None),
+            "onset_within_2_s": share(abs(s["onset_s"]) <= 2.0 for s in onsets), "relation": share(s["relation"] for s in hits)}
+
+
+def by_effect(scored):
+    result = {}
     for name in sorted({s["name"] for _, s in scored}):
-        said = {}
-        here = [(k, s) for k, s in scored if s["name"] == name]
-        for _, s in here:
+        said, here = {}, [s for _, s in scored if s["name"] == name]
+        for s in here:
             said[s.get("said", "nothing")] = said.get(s.get("said", "nothing"), 0) + 1
-        result["effects"][name] = {"of": len(here), "detected": sum(s["detected"] for _, s in here), "first": sum(s["first"] for _, s in here),
-                                   "among": sum(s["named"] for _, s in here), "said": dict(sorted(said.items(), key=lambda i: -i[1]))}
+        result[name] = {"of": len(here), "detected": sum(s["detected"] for s in here), "first": sum(s["first"] for s in here),
+                        "among": sum(s["named"] for s in here), "said": dict(sorted(said.items(), key=lambda i: -i[1]))}
+    return result
+
+
+def pair(case):
+    truths, effects = case["key"]["effects"], case["diagnosis"]["effects"]
+    found = sum(any(found_as(e, t) for e in effects) for t in truths)
+    return {"both": found == 2, "one": found >= 1, "nothing_else": len(effects) <= 2}
+
+
+def main():
+    cases = {}
+    for path in glob.glob(f"{sys.argv[1]}/*.json"):
+        with open(path) as file:
+            cases[int(os.path.basename(path).split(".")[0])] = json.load(file)
+    clean = [c for c in cases.values() if not c["key"]["effects"]]
+    raised = sum(bool(c["diagnosis"]["effects"]) for c in clean)
+    result = {"cases": len(cases), "clean": {"of": len(clean), "raised": raised, "share": raised / max(1, len(clean)),
+                                             "of_75": sum(bool(c["diagnosis"]["effects"]) for k, c in cases.items() if k < 300 and k % 4 == 0),
+                                             "nominal_and_two_standard_errors": 0.05 + 2.0 * math.sqrt(0.05 * 0.95 / max(1, len(clean)))}}
+    groups = {"named": range(300), "noise": range(2000, 2100), "relations": range(2100, 2200)}
+    for group, seeds in groups.items():
+        scored = [(c["key"]["strength"], score(c["key"]["effects"][0], c["diagnosis"]["effects"]))
+                  for k, c in sorted(cases.items()) if k in seeds and c["key"]["effects"]]
+        result[group] = {"strengths": {f"{strength:g}": table([s for k, s in scored if k == strength])
+                                       for strength in sorted({k for k, _ in scored})}, "effects": by_effect(scored)}
+    pairs = [pair(c) for k, c in sorted(cases.items()) if k >= 2200]
+    result["pairs"] = {key: share(p[key] for p in pairs) for key in ("both", "one", "nothing_else")}
     json.dump(result, sys.stdout, indent=1)
     print()
 

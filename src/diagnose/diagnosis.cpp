@@ -2,7 +2,9 @@
 
 #include <tbb/parallel_for.h>
 
+#include <algorithm>
 #include <atomic>
+#include <utility>
 
 #include "coast/diagnose/twin.hpp"
 #include "coast/simulate/random.hpp"
@@ -24,12 +26,15 @@ void hold_out(Search& search, Diagnosis& notes) {
   while (!search.taken().empty()) {
     const Verification verification = verify(search);
     notes.held_out = verification.all;
-    const auto worst = std::ranges::min_element(verification.gain);
-    if (*worst > 0.0) {
-      for (std::size_t i = 0; i < verification.gain.size(); ++i) search.set_held_out(i, verification.gain[i]);
+    const std::vector<Verification::Effect>& effects = verification.effects;
+    if (std::ranges::all_of(effects, &Verification::Effect::holds)) {
+      for (std::size_t i = 0; i < effects.size(); ++i) search.set_held_out(i, effects[i].gain);
       return;
     }
-    const auto index = static_cast<std::size_t>(worst - verification.gain.begin());
+    const auto worst = std::ranges::min_element(effects, [](const auto& a, const auto& b) {
+      return std::pair(a.holds(), a.gain) < std::pair(b.holds(), b.gain);
+    });
+    const auto index = static_cast<std::size_t>(worst - effects.begin());
     const Hypothesis& h = search.run().hypotheses()[search.taken()[index].hypothesis];
     notes.rejected.push_back(std::string(h.effect->name) + (h.axis_name().empty() ? "" : " " + h.axis_name()));
     search.give_up(index);

@@ -85,7 +85,8 @@ bool Search::take_random_effect(const Examination& examination, double to_beat) 
   std::ranges::sort(fits, std::ranges::greater{}, &FittedEffect::gain);
   const FittedEffect& best = fits.front();
   const double p_value = suspected.chance.p_value(2.0 * std::max(0.0, best.gain));
-  if (p_value > kNoiseFalseAlarm || best.gain <= to_beat) {
+  // A wandering bias follows a ramp as well as a ramp does: it has to explain more by what choosing among its forms is worth.
+  if (p_value > kNoiseFalseAlarm || best.gain - std::log(suspected.chance.count) <= to_beat) {
     if (p_value > kNoiseFalseAlarm) refused_noise_.push_back(first->noise);
     beaten_ = std::move(fits);
     return false;

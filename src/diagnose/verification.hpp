@@ -7,7 +7,12 @@ namespace coast::diagnose {
 
 struct Verification {
   HeldOut all;
-  std::vector<double> gain;  ///< of each effect taken, the others in
+  struct Effect {
+    double gain = 0.0;    ///< the others in
+    double better = 0.0;  ///< share of the blocks that it can act on
+    [[nodiscard]] bool holds() const;
+  };
+  std::vector<Effect> effects;  ///< as they were taken
 };
 /// Two folds of alternating blocks: sizes from the score and information of one, likelihood on the other.
 [[nodiscard]] Verification verify(const Search& search);
