@@ -46,11 +46,12 @@ std::optional<std::pair<double, double>> at_onset(const Examination& e, const Ta
 }  // namespace
 
 Search::Search(const MissionInput& input, const DiagnosisOptions& options, const study::Progress& progress)
-    : options_(options), progress_(progress), input_(input), grade_(grade_of(input.setup.model)) {
+    : options_(options), progress_(progress), input_(input), grade_(grade_of(input.setup.model)), noise_is_asked_for_(input.setup.noise_fit.has_value()) {
   input_.setup.filter.gate_probability = 0.0;  // what a gate refuses cannot be explained
   input_.setup.noise_fit.reset();
   run_again();
   run_again();  // from a start that is loose
+  if (noise_is_asked_for_) fit_noise();
   result_.grade = grade_;
   result_.before = run_->fit();
   result_.innovations_before = run_->solution().forward.innovations;
@@ -127,6 +128,7 @@ void Search::give_up(std::size_t index) {
   taken_.erase(taken_.begin() + at);
   result_.findings.erase(result_.findings.begin() + at);
   run_again();
+  fit_noise_again();
 }
 
 void Search::model_noise(MissionInput& input) const {
@@ -194,22 +196,20 @@ bool Search::follow(const Examination& e) {
 void Search::try_out(const Suspicion& s) {
   constexpr int kHalvings = 4;
   const double before = run_->log_likelihood();
-  const std::optional<FittedNoise> noise = std::exchange(noise_, std::nullopt);  // it may have stood for this effect
-  const double stated = noise ? before - noise->gain() : before;
   take(s);
   std::unique_ptr<MissionRun> start = std::move(run_);
   for (int i = 0; i <= kHalvings; ++i, taken_.back().value *= 0.5) {
     run_from(*start);
-    const double gained = run_->log_likelihood() - stated;
+    const double gained = run_->log_likelihood() - before;
     if (gained < 0.5 * result_.threshold) continue;
     result_.findings.back().delta_log_likelihood = gained;
     noise_tried_ = false;
+    fit_noise_again();
     return;
   }
   taken_.pop_back();
   result_.findings.pop_back();
   refused_.push_back(s.hypothesis);
-  noise_ = noise;
   run_from(*start);
 }
 
@@ -243,6 +243,7 @@ void Search::try_out(const Proposal& form, double to_beat) {
   run_again();
   const double gained = run_->log_likelihood() - before;
   if (gained - form.log_places > std::max(to_beat, -std::log(kFormFalseAlarm))) {
+    fit_noise_again();
     Finding& found = result_.findings[taken.size()];
     found.delta_log_likelihood = gained;
     if (!form.effect->relation.empty()) found.stability = form.stability;

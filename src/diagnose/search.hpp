@@ -23,7 +23,7 @@ class Search {
   [[nodiscard]] const MissionInput& modelled() const { return current_; }
   [[nodiscard]] const std::vector<Taken>& taken() const { return taken_; }
   [[nodiscard]] bool has_found_anything() const {
-    return !taken_.empty() || noise_ || !added_.empty() || !result_.noise.empty();
+    return !taken_.empty() || (noise_ && !noise_is_asked_for_) || !added_.empty() || !result_.noise.empty();
   }
   /// The mission with other values of what was taken, noise and start as they are.
   [[nodiscard]] MissionInput with_values(const std::vector<Taken>& taken) const;
@@ -47,6 +47,10 @@ class Search {
   void look_at_samples();
   /// Noise first where it explains more than the likeliest mean effect: a fit of what is stated, or a random effect beside it.
   bool take_noise(const Examination& examination, double mean_gain);
+  /// Of what is stated, from the last fit on; none where chance explains the difference.
+  void fit_noise();
+  /// What was taken since may be what it stood for.
+  void fit_noise_again();
   /// The likeliest random effect of an axis, and on the same axis the others, whose gains are set against each other.
   bool take_random_effect(const Examination& examination, double to_beat);
   [[nodiscard]] bool was_refused(const AddedNoise& noise) const;
@@ -82,6 +86,7 @@ class Search {
   const study::Progress& progress_;
   MissionInput input_;
   Grade grade_;
+  bool noise_is_asked_for_;  ///< the configuration wants it estimated: that it differs is no finding
   MissionInput current_;
   std::unique_ptr<MissionRun> run_;
   std::vector<Taken> taken_;

@@ -69,6 +69,20 @@ bool Search::take_noise(const Examination& examination, double mean_gain) {
   return true;
 }
 
+void Search::fit_noise() {
+  noise_ = fitted_noise(run_->prepared(), last_fit_, progress_);
+  if (!noise_) return;
+  last_fit_ = noise_->fit;
+  run_again();
+}
+
+void Search::fit_noise_again() {
+  if (!noise_) return;
+  noise_.reset();
+  run_again();
+  fit_noise();
+}
+
 bool Search::take_random_effect(const Examination& examination, double to_beat) {
   beaten_.clear();
   const NoiseSuspicions suspected = noise_suspicions(examination, *run_);

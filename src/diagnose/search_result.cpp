@@ -28,7 +28,7 @@ PairedDifference paired_difference(const std::vector<double>& before, const std:
 
 Diagnosis Search::finish() {
   describe_what_was_not_found();
-  if (noise_) std::ranges::copy(noise_->findings, std::back_inserter(result_.noise));
+  if (noise_ && !noise_is_asked_for_) std::ranges::copy(noise_->findings, std::back_inserter(result_.noise));
   std::ranges::move(random_effects_, std::back_inserter(result_.noise));
   for (std::size_t i = 0; i < result_.findings.size(); ++i) result_.findings[i].value = taken_[i].value;
   join_entries_with_exits();
