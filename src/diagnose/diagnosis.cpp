@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <atomic>
+#include <cmath>
 #include <utility>
 
 #include "coast/diagnose/twin.hpp"
@@ -19,6 +20,13 @@ namespace {
 void search_to_the_end(Search& search) {
   constexpr int kMostSteps = 20;
   for (int i = 0; i < kMostSteps && search.step();) ++i;
+}
+
+/// What was taken for a share of another effect, and is nothing now that this one is known better.
+void forget_what_vanished(Search& search) {
+  constexpr double kNothing = 2.0;  // sd
+  for (std::size_t i = search.taken().size(); i-- > 0;)
+    if (std::abs(search.taken()[i].value) < kNothing * search.sd(i) && !search.is_part_of_a_line(i)) search.give_up(i);
 }
 
 /// What explains nothing on held-out blocks is given up, the worst first.
@@ -77,6 +85,7 @@ Diagnosis diagnose(const MissionInput& input, const DiagnosisOptions& options, c
   };
   if (twins > 0 || !simulations.empty()) notes.twins = compared(simulations);
   search_to_the_end(search);
+  forget_what_vanished(search);
   hold_out(search, notes);
   if (twins > 0 && search.has_found_anything()) notes.twins_after = compared({});
   Diagnosis result = search.finish();

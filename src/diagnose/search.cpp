@@ -229,11 +229,40 @@ bool Search::was_refused(const Proposal& form) const {
   });
 }
 
+EffectPtr Search::refined(const EffectPtr& line) {
+  constexpr int kSide = 6;
+  constexpr double kStep = 0.1;  // of a line's width
+  const double span = run_->mission().imu.samples.back().t - run_->mission().imu.samples.front().t;
+  const std::vector<EffectPtr> before = suggested_;
+  std::vector<EffectPtr> lines;
+  for (int i = -kSide; i <= kSide; ++i)
+    lines.push_back(harmonic_disturbance(line->site, line->axes.front().front() - 'x',
+                                         line->fixed[0].value + i * kStep / span, line->fixed[1].value));
+  suggested_.insert(suggested_.end(), lines.begin(), lines.end());
+  const std::unique_ptr<MissionRun> start = std::move(run_);
+  run_from(*start);
+  const Examination e = examined({}, 0);
+  const auto first = static_cast<Eigen::Index>(run_->hypotheses().size()) - 2 * static_cast<Eigen::Index>(lines.size());
+  std::vector<double> ratio;
+  for (Eigen::Index at = first; at < run_->hypotheses().size(); at += 2) {
+    const Eigen::Vector2d score = e.score.segment<2>(at);
+    ratio.push_back(score.dot(Eigen::Matrix2d(e.information.block<2, 2>(at, at)).ldlt().solve(score)));
+  }
+  const auto best = static_cast<std::size_t>(std::ranges::max_element(ratio) - ratio.begin());
+  double shift = 0.0;  // of the vertex of the parabola through the largest and its neighbours
+  if (best > 0 && best + 1 < ratio.size())
+    shift = 0.5 * (ratio[best + 1] - ratio[best - 1]) / (2.0 * ratio[best] - ratio[best - 1] - ratio[best + 1]);
+  suggested_ = before;
+  run_from(*start);
+  return harmonic_disturbance(line->site, line->axes.front().front() - 'x', lines[best]->fixed[0].value + shift * kStep / span,
+                              line->fixed[1].value);
+}
+
 void Search::try_out(const Proposal& form, double to_beat) {
   const double before = run_->log_likelihood();
   const std::vector<Taken> taken = taken_;
   const std::vector<Finding> findings = result_.findings;
-  suggested_.push_back(form.effect);
+  suggested_.push_back(form.effect->relation.empty() ? refined(form.effect) : form.effect);
   const std::unique_ptr<MissionRun> start = std::move(run_);
   run_from(*start);
   const auto first = static_cast<Eigen::Index>(run_->hypotheses().size()) - static_cast<Eigen::Index>(form.effect->axes.size());

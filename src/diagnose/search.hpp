@@ -25,6 +25,11 @@ class Search {
   [[nodiscard]] bool has_found_anything() const {
     return !taken_.empty() || (noise_ && !noise_is_asked_for_) || !added_.empty() || !result_.noise.empty();
   }
+  [[nodiscard]] double sd(std::size_t index) const { return result_.findings[index].sd; }
+  /// Sine and cosine of an oscillation belong together.
+  [[nodiscard]] bool is_part_of_a_line(std::size_t index) const {
+    return result_.findings[index].hypothesis.effect->axes.size() == 2;
+  }
   /// The mission with other values of what was taken, noise and start as they are.
   [[nodiscard]] MissionInput with_values(const std::vector<Taken>& taken) const;
   /// What the last run says. @param counts  nothing: all innovations
@@ -69,6 +74,8 @@ class Search {
   /// Its coefficients are found together with those that are taken already. Refused for good where it does not explain more than
   /// the likeliest effect that has a name.
   void try_out(const Proposal& form, double to_beat);
+  /// The likeliest frequency near that of a line, which the periodogram knows to a fraction of its width.
+  [[nodiscard]] EffectPtr refined(const EffectPtr& line);
   void take(const Suspicion& s);
   [[nodiscard]] Alternative alternative(const Suspicion& s, double log_odds) const;
   [[nodiscard]] std::vector<Eigen::Index> of_whole_mission() const;

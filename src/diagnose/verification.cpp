@@ -38,11 +38,12 @@ std::vector<double> log_likelihoods(const MissionInput& input, const Blocks& blo
 
 }  // namespace
 
-// What gains much in few blocks and loses in most of the others explains an accident. An effect that says nothing in a block is
-// better there as often as not.
+// What gains much in few blocks and loses in most of the others explains an accident. What says nothing in a block is better
+// there as often as not; what begins at some time speaks at its beginning alone.
 bool Verification::Effect::holds() const {
-  constexpr double kFewest = 0.3;
-  return gain > 0.0 && better >= kFewest;
+  constexpr double kDeviations = 2.33;  // of a binomial share: 1 %
+  if (!(gain > 0.0)) return false;
+  return begins || better > 0.5 - kDeviations * 0.5 / std::sqrt(static_cast<double>(blocks));
 }
 
 Verification verify(const Search& search) {
@@ -52,7 +53,6 @@ Verification verify(const Search& search) {
   std::vector<double> with(blocks.count(), 0.0);
   Verification result;
   result.effects.resize(search.taken().size());
-  std::vector<double> acted(search.taken().size(), 0.0);
   for (std::size_t fold = 0; fold < 2; ++fold) {
     const Examination examination =
         search.examined([&](geo::GpsTime t) { return blocks.of(t) % 2 != fold; }, 0);
@@ -65,16 +65,15 @@ Verification verify(const Search& search) {
       std::vector<Taken> others = values;
       others.erase(others.begin() + static_cast<std::ptrdiff_t>(i));
       const std::vector<double> less = log_likelihoods(search.with_values(others), blocks);
-      const std::size_t first = values[i].from ? blocks.of(*values[i].from) : 0;
+      Verification::Effect& effect = result.effects[i];
+      effect.begins = values[i].from.has_value();
       for (std::size_t b = fold; b < blocks.count(); b += 2) {
-        result.effects[i].gain += all[b] - less[b];
-        if (b < first) continue;
-        acted[i] += 1.0;
-        if (all[b] > less[b]) result.effects[i].better += 1.0;
+        effect.gain += all[b] - less[b];
+        if (all[b] > less[b]) effect.better += 1.0 / static_cast<double>(blocks.count());
+        ++effect.blocks;
       }
     }
   }
-  for (std::size_t i = 0; i < acted.size(); ++i) result.effects[i].better /= std::max(1.0, acted[i]);
   HeldOut& h = result.all;
   h.blocks = static_cast<int>(blocks.count());
   double squares = 0.0;

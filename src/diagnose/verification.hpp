@@ -9,7 +9,9 @@ struct Verification {
   HeldOut all;
   struct Effect {
     double gain = 0.0;    ///< the others in
-    double better = 0.0;  ///< share of the blocks that it can act on
+    double better = 0.0;  ///< share of the blocks
+    int blocks = 0;
+    bool begins = false;  ///< at some time, not with the mission
     [[nodiscard]] bool holds() const;
   };
   std::vector<Effect> effects;  ///< as they were taken

@@ -6,12 +6,16 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include <random>
+
 #include "diagnose/concealed.hpp"
 
 namespace coast {
 namespace {
 
 using namespace diagnose;
+
+const DiagnosisOptions kWithoutTwins{.twins = 0};
 
 /// The one effect found, by name and axis; nothing where there are more or others.
 const Finding* only(const Diagnosis& d, std::string_view name, std::string_view axis) {
@@ -23,12 +27,13 @@ const Finding* only(const Diagnosis& d, std::string_view name, std::string_view 
 std::string names(const Diagnosis& d) {
   std::string text;
   for (const Finding& f : d.findings)
-    text += fmt::format("{} {} {} +- {}; ", f.hypothesis.effect->name, f.hypothesis.axis_name(), f.value, f.sd);
+    text += fmt::format("{} {} {} {} +- {}; ", f.hypothesis.effect->name, f.hypothesis.axis_name(),
+                        f.hypothesis.effect->equation, f.value, f.sd);
   return text;
 }
 
 TEST(Diagnosis, NothingIsMissingFromAnHonestMission) {
-  const Diagnosis d = diagnose::diagnose(test::honest_mission(1), {}, {});
+  const Diagnosis d = diagnose::diagnose(test::honest_mission(1), kWithoutTwins, {});
   EXPECT_TRUE(d.findings.empty()) << names(d);
   EXPECT_TRUE(d.noise.empty());
   EXPECT_GT(d.detectable_not_found.size(), 30U);
@@ -39,7 +44,7 @@ TEST(Diagnosis, NothingIsMissingFromAnHonestMission) {
 TEST(Diagnosis, AWrongLeverArmIsFoundAndItsSizeToo) {
   MissionInput input = test::honest_mission(2);
   input.setup.lever_arm_b.y() += 0.15;
-  const Diagnosis d = diagnose::diagnose(input, {}, {});
+  const Diagnosis d = diagnose::diagnose(input, kWithoutTwins, {});
   const Finding* f = only(d, "lever_arm_error", "y");
   ASSERT_NE(f, nullptr) << names(d);
   EXPECT_NEAR(f->value, -0.15, 4.0 * f->sd);
@@ -51,7 +56,7 @@ TEST(Diagnosis, AWrongLeverArmIsFoundAndItsSizeToo) {
 TEST(Diagnosis, ATimeOffsetIsFound) {
   MissionInput input = test::honest_mission(3);
   input.setup.time_offset_s = 0.03;
-  const Diagnosis d = diagnose::diagnose(input, {}, {});
+  const Diagnosis d = diagnose::diagnose(input, kWithoutTwins, {});
   const Finding* f = only(d, "gnss_time_offset", "");
   ASSERT_NE(f, nullptr) << names(d);
   EXPECT_NEAR(f->value, -0.03, 4.0 * f->sd);
@@ -60,7 +65,7 @@ TEST(Diagnosis, ATimeOffsetIsFound) {
 TEST(Diagnosis, AScaleFactorOfAGyroIsFound) {
   MissionInput input = test::honest_mission(4);
   for (record::ImuSample& sample : input.imu.samples) sample.dtheta.z() *= 1.01;
-  const Diagnosis d = diagnose::diagnose(input, {}, {});
+  const Diagnosis d = diagnose::diagnose(input, kWithoutTwins, {});
   const Finding* f = only(d, "gyro_scale_factor", "z");
   ASSERT_NE(f, nullptr) << names(d);
   EXPECT_NEAR(f->value, 0.01, 4.0 * f->sd + 1e-4);  // 1.01 - 1 of what was measured, not of the truth
@@ -71,7 +76,7 @@ TEST(Diagnosis, ABiasThatJumpsIsFoundWithItsInstant) {
   const geo::GpsTime jump = input.imu.samples.front().t + 170.0;
   for (record::ImuSample& sample : input.imu.samples)
     if (sample.t > jump) sample.dtheta.z() += 1e-3 * sample.dt;
-  const Diagnosis d = diagnose::diagnose(input, {}, {});
+  const Diagnosis d = diagnose::diagnose(input, kWithoutTwins, {});
   const Finding* f = only(d, "bias_step", "z");
   ASSERT_NE(f, nullptr) << names(d);
   EXPECT_EQ(f->hypothesis.effect->site, Site::kGyro);
@@ -84,7 +89,7 @@ TEST(Diagnosis, AWrongFixIsFoundWithBothItsEnds) {
   const geo::GpsTime from = input.gnss.fixes.front().t + 150.0;
   for (record::GnssFix& fix : input.gnss.fixes)
     if (fix.t >= from && fix.t < from + 30.0) fix.r_ea_e += Eigen::Vector3d(0.0, 0.0, 0.4);  // up and north here
-  const Diagnosis d = diagnose::diagnose(input, {}, {});
+  const Diagnosis d = diagnose::diagnose(input, kWithoutTwins, {});
   ASSERT_FALSE(d.findings.empty());
   for (const Finding& f : d.findings) {
     EXPECT_EQ(f.hypothesis.effect->name, "gnss_wrong_fix") << names(d);
@@ -92,6 +97,89 @@ TEST(Diagnosis, AWrongFixIsFoundWithBothItsEnds) {
     EXPECT_NEAR(*f.from - from, 0.0, 1.0);
     EXPECT_NEAR(*f.to - from, 30.0, 1.0);
   }
+}
+
+/// The noise found, by name, sensor and axis.
+const NoiseFinding* noise_named(const Diagnosis& d, std::string_view name, std::string_view sensor, std::string_view axis) {
+  for (const NoiseFinding& f : d.noise)
+    if (f.name == name && f.sensor == sensor && f.axis == axis) return &f;
+  return nullptr;
+}
+
+// The factor by which a scale factor moves what is measured, on data that its size was not estimated from.
+TEST(Diagnosis, WhatIsFoundHoldsOnHeldOutBlocks) {
+  MissionInput input = test::honest_mission(7);
+  for (record::ImuSample& sample : input.imu.samples) sample.dv.x() *= 1.01;
+  const Diagnosis d = diagnose::diagnose(input, kWithoutTwins, {});
+  ASSERT_NE(only(d, "accel_scale_factor", "x"), nullptr) << names(d);
+  ASSERT_TRUE(d.held_out.has_value());
+  EXPECT_GT(d.held_out->gain, 3.0 * d.held_out->gain_sd);
+  EXPECT_GT(d.held_out->after_per_epoch, d.held_out->before_per_epoch);
+  ASSERT_TRUE(d.findings.front().held_out_gain.has_value());
+  EXPECT_NEAR(*d.findings.front().held_out_gain, d.held_out->gain, 1e-6);  // there is no other
+}
+
+// A stationary first-order process by its difference equation, sigma 2e-3 rad/s over 30 s: ten times the white noise's density.
+TEST(Diagnosis, AWanderingBiasIsFoundAsNoise) {
+  MissionInput input = test::honest_mission(8);
+  std::mt19937_64 engine(8);
+  std::normal_distribution<double> normal;
+  constexpr double kSigma = 2e-3;
+  const double phi = std::exp(-1.0 / 50.0 / 30.0);
+  double bias = kSigma * normal(engine);
+  for (record::ImuSample& sample : input.imu.samples) {
+    bias = phi * bias + kSigma * std::sqrt(1.0 - phi * phi) * normal(engine);
+    sample.dtheta.x() += bias * sample.dt;
+  }
+  const Diagnosis d = diagnose::diagnose(input, kWithoutTwins, {});
+  const NoiseFinding* f = noise_named(d, "extra_gauss_markov_bias", "gyro", "x");
+  if (f == nullptr) f = noise_named(d, "flicker_noise", "gyro", "x");  // 300 s hardly tell them apart
+  ASSERT_NE(f, nullptr) << names(d);
+  EXPECT_GT(f->delta_log_likelihood, 50.0);
+  EXPECT_GT(f->value, kSigma / 4.0);
+  EXPECT_LT(f->value, kSigma * 4.0);
+  EXPECT_NEAR(d.after.nis, 1.0, 0.1);
+}
+
+TEST(Diagnosis, AnOscillationIsFoundWithItsFrequency) {
+  MissionInput input = test::honest_mission(9);
+  constexpr double kAmplitude = 0.05, kFrequency = 0.11;
+  for (record::ImuSample& sample : input.imu.samples)
+    sample.dv.y() += kAmplitude * std::sin(2.0 * geo::kPi * kFrequency * (sample.t - input.imu.samples.front().t)) * sample.dt;
+  const Diagnosis d = diagnose::diagnose(input, kWithoutTwins, {});
+  const Finding* f = only(d, "harmonic_disturbance", "y");
+  ASSERT_NE(f, nullptr) << names(d);
+  EXPECT_EQ(f->hypothesis.effect->site, Site::kAccel);
+  EXPECT_NEAR(f->value, kAmplitude, 4.0 * f->sd);
+  EXPECT_NEAR(f->hypothesis.effect->fixed.front().value, kFrequency, 0.5 / 300.0);  // half a line's width
+}
+
+TEST(Diagnosis, ARelationWithoutANameIsTold) {
+  MissionInput input = test::honest_mission(10);
+  for (record::ImuSample& sample : input.imu.samples)
+    sample.dtheta.x() += 0.02 * (sample.dtheta.z() / sample.dt) * (sample.dv.x() / sample.dt) * sample.dt;
+  const Diagnosis d = diagnose::diagnose(input, kWithoutTwins, {});
+  const Finding* f = only(d, "unknown", "x");
+  ASSERT_NE(f, nullptr) << names(d);
+  EXPECT_EQ(f->hypothesis.effect->relation, "omega_z*f_x");
+  EXPECT_NEAR(f->value, 0.02, 4.0 * f->sd);
+  ASSERT_TRUE(f->stability.has_value());
+  EXPECT_GT(*f->stability, 0.5);
+}
+
+TEST(Diagnosis, ASaturatedGyroIsFoundAndMended) {
+  MissionInput input = test::honest_mission(11);
+  double largest = 0.0;
+  for (const record::ImuSample& sample : input.imu.samples) largest = std::max(largest, std::abs(sample.dtheta.z() / sample.dt));
+  const double limit = 0.7 * largest;
+  for (record::ImuSample& sample : input.imu.samples)
+    sample.dtheta.z() = std::clamp(sample.dtheta.z() / sample.dt, -limit, limit) * sample.dt;
+  const Diagnosis d = diagnose::diagnose(input, kWithoutTwins, {});
+  const NoiseFinding* f = noise_named(d, "saturation", "gyro", "z");
+  ASSERT_NE(f, nullptr) << names(d);
+  EXPECT_NEAR(std::abs(f->value), limit, 1e-9);
+  EXPECT_GT(f->delta_log_likelihood, 100.0);
+  EXPECT_LT(d.after.outage_rms_m, d.before.outage_rms_m);
 }
 
 }  // namespace

@@ -1,0 +1,99 @@
+// What converters do to samples, made here sample by sample.
+
+#include "coast/diagnose/sample_effect.hpp"
+
+#include <gtest/gtest.h>
+
+#include <random>
+
+#include "coast/diagnose/correction.hpp"
+
+namespace coast {
+namespace {
+
+using namespace diagnose;
+
+const SampleEffect& sample_effect(std::string_view name) {
+  for (const SampleEffect& e : sample_catalogue())
+    if (e.name == name) return e;
+  throw std::logic_error("no such effect");
+}
+
+/// A slow wave with white noise.
+AxisSeries wave(double noise, std::uint64_t seed) {
+  std::mt19937_64 engine(seed);
+  std::normal_distribution<double> normal(0.0, noise);
+  AxisSeries series;
+  series.white_sd = noise;
+  series.values = Eigen::ArrayXd::LinSpaced(5000, 0.0, 60.0).sin();
+  for (double& x : series.values) x += normal(engine);
+  return series;
+}
+
+TEST(SampleEffects, AreComplete) {
+  for (const SampleEffect& e : sample_catalogue()) {
+    for (const std::string_view words : {e.name, e.parameter, e.unit, e.equation, e.meaning, e.separating_manoeuvre, e.source})
+      EXPECT_FALSE(words.empty()) << e.name;
+    EXPECT_TRUE(e.find != nullptr && e.model != nullptr) << e.name;
+  }
+}
+
+TEST(SampleEffects, OrdinarySamplesBearNoMark) {
+  for (const SampleEffect& e : sample_catalogue())
+    for (std::uint64_t seed = 0; seed < 20; ++seed) EXPECT_FALSE(e.find(wave(1e-3, seed)).has_value()) << e.name << seed;
+}
+
+TEST(SampleEffects, AFileWithFewDigitsIsNotCoarse) {
+  AxisSeries series = wave(1e-2, 1);
+  series.values = (series.values * 1e4).round() / 1e4;
+  EXPECT_FALSE(sample_effect("quantisation").find(series).has_value());
+}
+
+TEST(SampleEffects, ACoarseStepIsFound) {
+  AxisSeries series = wave(1e-3, 2);
+  series.values = 0.0037 * (series.values / 0.0037).round();
+  const std::optional<double> step = sample_effect("quantisation").find(series);
+  ASSERT_TRUE(step.has_value());
+  EXPECT_NEAR(*step, 0.0037, 1e-12);
+  EXPECT_FALSE(sample_effect("saturation").find(series).has_value());
+  series.rounding_stated = true;
+  EXPECT_FALSE(sample_effect("quantisation").find(series).has_value());
+}
+
+TEST(SampleEffects, AnUpperAndALowerLimitAreFound) {
+  AxisSeries series = wave(1e-3, 3);
+  AxisSeries high = series;
+  high.values = high.values.min(0.9);
+  EXPECT_NEAR(sample_effect("saturation").find(high).value_or(0.0), 0.9, 1e-12);
+  AxisSeries low = series;
+  low.values = low.values.max(-0.8);
+  EXPECT_NEAR(sample_effect("saturation").find(low).value_or(0.0), -0.8, 1e-12);
+}
+
+// Half a sine beyond the limit, cut at 80 % of its height: the cubic with the slopes at the cut leaves a tenth of what was lost.
+TEST(SampleEffects, WhatASaturatedSensorMissedIsMended) {
+  MissionInput input;
+  input.imu.rate_hz = 100.0;
+  const geo::GpsTime start = geo::GpsTime::from_week(2374, 1000.0);
+  constexpr double kLimit = 0.8;
+  double truth = 0.0;
+  for (int i = 0; i < 1000; ++i) {
+    const double rate = std::sin(0.02 * i);
+    truth += 0.01 * rate;
+    input.imu.samples.push_back({start + 0.01 * (i + 1), 0.01, {0.0, 0.0, 0.01 * std::clamp(rate, -kLimit, kLimit)}, Eigen::Vector3d::Zero()});
+  }
+  const auto sum = [&] {
+    double total = 0.0;
+    for (const record::ImuSample& s : input.imu.samples) total += s.dtheta.z() > 0.0 ? s.dtheta.z() : 0.0;
+    return total;
+  };
+  double positive = 0.0;
+  for (int i = 0; i < 1000; ++i) positive += 0.01 * std::max(0.0, std::sin(0.02 * i));
+  const double lost = positive - sum();
+  sample_effect("saturation").model(input, Site::kGyro, 2, kLimit);
+  EXPECT_GT(lost, 0.0);
+  EXPECT_LT(std::abs(positive - sum()), 0.15 * lost);
+}
+
+}  // namespace
+}  // namespace coast
