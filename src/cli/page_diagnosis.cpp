@@ -160,30 +160,6 @@ report::Section detectable_section(const Diagnosis& d) {
   return section;
 }
 
-report::Table twin_table(const char* id, const char* title, const std::vector<diagnose::TwinStatistic>& twins) {
-  report::Table table;
-  table.id = id;
-  table.title = title;
-  table.columns = {{"figure", "", false}, {"recording", ""}, {"twins, 5 %", ""}, {"median", ""}, {"95 %", ""}, {"p", ""}};
-  for (const diagnose::TwinStatistic& t : twins)
-    table.rows.push_back(cells({t.name, number(t.real), number(t.q05), number(t.q50), number(t.q95), number(t.p_adjusted, 2)}));
-  return table;
-}
-
-report::Section twin_section(const Diagnosis& d, const std::optional<SimulationCheck>& simulation) {
-  report::Section section;
-  section.id = "twins";
-  section.title = "The recording among its twins";
-  section.lead =
-      simulation ? fmt::format("Figures of the recording beside those of {}. p: that any figure of a simulated recording lies as far out.",
-                               simulation->source)
-                 : std::string("Recordings of the same motion, simulated as the model says and run through the same steps. p: that "
-                               "any figure of a twin lies as far out by chance.");
-  section.tables.push_back(twin_table("twins-before", "Of the configured model", d.twins));
-  if (!d.twins_after.empty()) section.tables.push_back(twin_table("twins-after", "Of the model with what was found", d.twins_after));
-  return section;
-}
-
 }  // namespace
 
 report::Page diagnosis_page(const std::string& title, const Diagnosis& d, const std::string& diagnosed_yaml,

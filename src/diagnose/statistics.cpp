@@ -79,7 +79,7 @@ void add_regimes(const MissionRun& run, std::vector<Statistic>& figures) {
   for (std::size_t i = 0; i < kRegimes.size(); ++i) {
     std::vector<double> sorted = series.values[i];
     double difference = 0.0;
-    if (!sorted.empty()) {
+    if (!sorted.empty() && std::ranges::min(sorted) < std::ranges::max(sorted)) {
       const auto middle = sorted.begin() + static_cast<std::ptrdiff_t>(sorted.size() / 2);
       std::ranges::nth_element(sorted, middle);
       std::array<Mean, 2> nis;

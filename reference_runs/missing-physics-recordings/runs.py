@@ -1,0 +1,89 @@
+"""runs.py COAST CONCEAL OUT: `coast diagnose` on real recordings as they are, with a configuration that was falsified, and with an effect put
+into the recording's own IMU data; what each finds goes to OUT/numbers.json. A run that is there already is not made again."""
+
+import json
+import os
+import re
+import subprocess
+import sys
+
+CONFIGS = os.path.abspath("../../configs/recordings")
+DATA = os.environ["COAST_DATA"]
+NUMBERED = "time=1,accel=2:3:4,gyro=5:6:7"
+CAR_IMU = f"{DATA}/car-drive-0708/imu_gpst.csv.gz"
+
+
+def config(name, changes=(), drop=()):
+    with open(f"{CONFIGS}/{name}.yaml") as file:
+        text = file.read()
+    text = text.replace("error_model: ../", f"error_model: {os.path.dirname(CONFIGS)}/").replace("error_model: car-", f"error_model: {CONFIGS}/car-")
+    for old, new in changes:
+        if old not in text:
+            sys.exit(f"{name}: no '{old}'")
+        text = text.replace(old, new)
+    return "\n".join(line for line in text.split("\n") if line.split(":")[0].strip() not in drop)
+
+
+FREE = ("lever_arm_sd_m", "time_offset_sd_s")  # what is to be found is not to be estimated on the way
+CAR = "car-drive-0708"
+
+
+def car(*changes):
+    return lambda out: config(CAR, changes, FREE)
+
+
+def car_with(effect, axis, size, onset=0.0):
+    def make(out):
+        target = f"{out}/imu.csv.gz"
+        subprocess.run([sys.executable, CONCEAL, "--into", CAR_IMU, "--columns", NUMBERED, "--effect", effect, "--axis", axis, "--size", str(size),
+                        "--onset", str(onset), "--out", target], check=True)
+        return config(CAR, [("${COAST_DATA}/car-drive-0708/imu_gpst.csv.gz", target)], FREE)
+    return make
+
+
+def rover(run):
+    return lambda out: config("rc-rover-mimu", [("h_imu", f"{run}_imu"), ("h_rtk", f"{run}_rtk"), ("time_offset_s: 0.2", "time_offset_s: 0")], FREE)
+
+
+RUNS = {
+    "as-is/car-drive-0708": car(), "as-is/rc-rover-mimu": lambda out: config("rc-rover-mimu"),
+    "as-is/quadrotor-mimu": lambda out: config("quadrotor-mimu"), "as-is/rover-cpet-run3": lambda out: config("rover-cpet-run3"),
+    "falsified/lever-arm-0.3": car(("lever_arm_m: [0, -0.05, 0]", "lever_arm_m: [0.3, -0.05, 0]")),
+    "falsified/time-offset-0.05": car(("time_offset_s: -0.1", "time_offset_s: -0.05")),
+    "falsified/time-offset-0.1": car(("time_offset_s: -0.1", "time_offset_s: 0.0")),
+    "falsified/noise-3": car(("  noise: estimated\ngnss:", "  noise: {gyro_factor: 66, accel_factor: 63}\ngnss:")),
+    "rover-offset/h": rover("h"), "rover-offset/k": rover("k"), "rover-offset/l": rover("l"),
+    "concealed/accel-scale-x-5-percent": car_with("accel_scale_factor", "x", 0.05),
+    "concealed/gyro-scale-z-3-percent": car_with("gyro_scale_factor", "z", 0.03),
+    "concealed/gyro-step-z": car_with("bias_step", "z", 0.01, 250.0),
+    "concealed/g-sensitivity-yx": car_with("gyro_g_sensitivity", "yx", 2e-3),
+    "concealed/time-shift-0.08": car_with("gnss_time_offset", "", 0.08),
+    "concealed/clipped-gyro-z": car_with("saturation", "z", 0.25),
+}
+
+
+def one(name, make, out):
+    folder = f"{out}/{name}"
+    kept = f"{folder}/diagnosis/diagnosis.json"
+    if not os.path.exists(kept):
+        os.makedirs(folder, exist_ok=True)
+        with open(f"{folder}/run.yaml", "w") as file:
+            file.write(re.sub(r"\n(outages|reference|vehicle|output):[^\n]*(\n  [^\n]*)*", "", make(folder)))
+        subprocess.run([COAST, "diagnose", f"{folder}/run.yaml", "--out", f"{folder}/diagnosis", "--twins", "0", "--quiet"], check=True)
+    with open(kept) as file:
+        d = json.load(file)
+    effects = {f'{e["name"]} {e["sensor"]} {e.get("relation", e["axis"])}'.strip():
+               {"value": e["parameters"][0]["value"], "std": e["parameters"][0].get("std", 0.0), "gain": e["delta_log_likelihood"],
+                "held_out": e.get("held_out_gain")} for e in d["effects"]}
+    v = d["verification"]
+    return {"effects": effects, "nis": v["nis"], "log_likelihood_per_epoch": v["log_likelihood_per_epoch"], "outage_rms_m": v["outage_rms_m"],
+            "rejected": v["rejected"]}
+
+
+COAST, CONCEAL, OUT = sys.argv[1:4]
+numbers = {}
+for name, make in RUNS.items():
+    numbers[name] = one(name, make, OUT)
+    print(name, list(numbers[name]["effects"]), flush=True)
+with open(f"{OUT}/numbers.json", "w") as file:
+    json.dump(numbers, file, indent=1)

@@ -1,0 +1,79 @@
+// The recording among its twins: every figure in units of their spread, before and after.
+
+#include <fmt/format.h>
+
+#include "diagnosis_json.hpp"
+#include "page_parts.hpp"
+
+namespace coast::cli {
+
+namespace {
+
+using diagnose::TwinStatistic;
+
+/// From the twins' median, in halves of the distance between their 5 % and 95 %.
+double away(const TwinStatistic& t) {
+  const double half = 0.5 * (t.q95 - t.q05);
+  return half > 0.0 ? (t.real - t.q50) / half : 0.0;
+}
+
+void add_recording(const std::vector<TwinStatistic>& twins, const char* label, report::Tone tone, report::Plot& plot) {
+  std::vector<double> x, y;
+  for (std::size_t i = 0; i < twins.size(); ++i) {
+    x.push_back(away(twins[i]));
+    y.push_back(-static_cast<double>(i));
+  }
+  if (!x.empty()) plot.points.push_back({.label = label, .series = curve(x, y), .tone = tone, .radius_px = 4.0});
+}
+
+report::Panel twin_panel(const diagnose::Diagnosis& d) {
+  report::Panel panel;
+  panel.id = "twin-figures";
+  panel.title = "Figures of the recording, from their twins' median";
+  panel.caption = "In halves of the distance between the twins' 5 % and 95 %. Inside the boxes' whiskers the model tells what the recording shows.";
+  panel.plots.resize(1);
+  report::Plot& plot = panel.plot();
+  plot.x.label = "distance";
+  plot.x.unit = "spreads";
+  constexpr double kQuartile = 0.41;  // of the 5 and 95 % points, for a normal distribution
+  report::Boxes boxes{.label = "twins", .boxes = {}, .tone = report::Tone::kMuted};
+  for (std::size_t i = 0; i < d.twins.size(); ++i) {
+    const double row = -static_cast<double>(i);
+    plot.y.ticks.push_back({row, d.twins[i].name});
+    boxes.boxes.push_back({row, -1.0, -kQuartile, 0.0, kQuartile, 1.0});
+  }
+  plot.boxes.push_back(std::move(boxes));
+  add_recording(d.twins, d.twins_after.empty() ? "recording" : "recording, configured model", report::Tone::kWarn, plot);
+  add_recording(d.twins_after, "with what was found", report::Tone::kGood, plot);
+  plot.height_px = 90 + 24 * static_cast<int>(d.twins.size());
+  return panel;
+}
+
+report::Table twin_table(const char* id, const char* title, const std::vector<TwinStatistic>& twins) {
+  report::Table table;
+  table.id = id;
+  table.title = title;
+  table.columns = {{"figure", "", false}, {"recording", ""}, {"twins, 5 %", ""}, {"median", ""}, {"95 %", ""}, {"p", ""}};
+  for (const TwinStatistic& t : twins)
+    table.rows.push_back(cells({t.name, number(t.real), number(t.q05), number(t.q50), number(t.q95), number(t.p_adjusted, 2)}));
+  return table;
+}
+
+}  // namespace
+
+report::Section twin_section(const diagnose::Diagnosis& d, const std::optional<SimulationCheck>& simulation) {
+  report::Section section;
+  section.id = "twins";
+  section.title = "The recording among its twins";
+  section.lead =
+      simulation ? fmt::format("Figures of the recording beside those of {}. p: that any figure of a simulated recording lies as far out.",
+                               simulation->source)
+                 : std::string("Recordings of the same motion, simulated as the model says and run through the same steps. p: that "
+                               "any figure of a twin lies as far out by chance.");
+  section.panels.push_back(twin_panel(d));
+  section.tables.push_back(twin_table("twins-before", "Of the configured model", d.twins));
+  if (!d.twins_after.empty()) section.tables.push_back(twin_table("twins-after", "Of the model with what was found", d.twins_after));
+  return section;
+}
+
+}  // namespace coast::cli
