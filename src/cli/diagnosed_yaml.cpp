@@ -63,11 +63,12 @@ std::string diagnosed_yaml(const std::string& resolved, const diagnose::Diagnosi
   if (of_gnss) {
     const estimate::GnssScale& scale = d.modelled.setup.filter.gnss_scale;
     const estimate::CorrelatedGnss& correlated = d.modelled.setup.filter.auxiliary.correlated_gnss;
-    text = with_value(text, "gnss", "noise",
-                      fmt::format("{{scale_horizontal: {:.17g}, scale_vertical: {:.17g}, scale_velocity: {:.17g}, "
-                                  "correlated_horizontal_m: {:.17g}, correlated_vertical_m: {:.17g}, correlated_time_s: {:.17g}}}",
-                                  scale.horizontal, scale.vertical, scale.velocity, correlated.horizontal_m,
-                                  correlated.vertical_m, correlated.time_s));
+    text =
+        with_value(text, "gnss", "noise",
+                   fmt::format("{{scale_horizontal: {:.17g}, scale_vertical: {:.17g}, scale_velocity: {:.17g}, "
+                               "correlated_horizontal_m: {:.17g}, correlated_vertical_m: {:.17g}, correlated_time_s: {:.17g}}}",
+                               scale.horizontal, scale.vertical, scale.velocity, correlated.horizontal_m, correlated.vertical_m,
+                               correlated.time_s));
   }
   return entries.empty() ? text : text + "effects:\n" + entries;
 }

@@ -122,7 +122,12 @@ Json effects_json(const diagnose::Diagnosis& d, double start, double end, const 
 Json twins_json(const std::vector<diagnose::TwinStatistic>& twins) {
   Json list = Json::array();
   for (const diagnose::TwinStatistic& t : twins)
-    list.push_back({{"statistic", t.name}, {"real", t.real}, {"q05", t.q05}, {"q50", t.q50}, {"q95", t.q95}, {"p_adjusted", t.p_adjusted}});
+    list.push_back({{"statistic", t.name},
+                    {"real", t.real},
+                    {"q05", t.q05},
+                    {"q50", t.q50},
+                    {"q95", t.q95},
+                    {"p_adjusted", t.p_adjusted}});
   return list;
 }
 
@@ -130,10 +135,14 @@ Json verification_json(const diagnose::Diagnosis& d) {
   Json j = {{"log_likelihood_per_epoch", {d.before.log_likelihood_per_epoch, d.after.log_likelihood_per_epoch}},
             {"nis", {d.before.nis, d.after.nis}},
             {"outage_rms_m", {d.before.outage_rms_m, d.after.outage_rms_m}},
-            {"outage_difference_m", {{"mean", d.outage_change.mean}, {"sd", d.outage_change.sd}, {"outages", d.outage_change.count}}}};
+            {"outage_difference_m",
+             {{"mean", d.outage_change.mean}, {"sd", d.outage_change.sd}, {"outages", d.outage_change.count}}}};
   if (d.held_out) {
     j["held_out_log_likelihood_per_epoch"] = {d.held_out->before_per_epoch, d.held_out->after_per_epoch};
-    j["held_out"] = {{"gain", d.held_out->gain}, {"sd", d.held_out->gain_sd}, {"blocks", d.held_out->blocks}, {"better", d.held_out->better}};
+    j["held_out"] = {{"gain", d.held_out->gain},
+                     {"sd", d.held_out->gain_sd},
+                     {"blocks", d.held_out->blocks},
+                     {"better", d.held_out->better}};
   }
   if (!d.twins_after.empty()) j["twins"] = twins_json(d.twins_after);
   j["rejected"] = d.rejected;

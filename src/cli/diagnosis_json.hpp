@@ -29,10 +29,10 @@ struct SimulationCheck {
 /// Whether an error model with what was found differs from the configured one.
 [[nodiscard]] bool changes_error_model(const diagnose::Diagnosis& diagnosis);
 [[nodiscard]] report::Page diagnosis_page(const std::string& title, const diagnose::Diagnosis& diagnosis,
-                                          const std::string& diagnosed_yaml,
-                                          const std::optional<SimulationCheck>& simulation);
+                                          const std::string& diagnosed_yaml, const std::optional<SimulationCheck>& simulation);
 /// The section that sets the recording among its twins.
-[[nodiscard]] report::Section twin_section(const diagnose::Diagnosis& diagnosis, const std::optional<SimulationCheck>& simulation);
+[[nodiscard]] report::Section twin_section(const diagnose::Diagnosis& diagnosis,
+                                           const std::optional<SimulationCheck>& simulation);
 /// What was found, how large and what else it could be, in a paragraph.
 [[nodiscard]] std::string explanation(const diagnose::Finding& finding);
 [[nodiscard]] std::string explanation(const diagnose::NoiseFinding& finding);

@@ -80,8 +80,7 @@ report::Section missing_section(const Diagnosis& d) {
     section.notes.push_back({report::Note::Kind::kWarning,
                              fmt::format("{} {}", f.hypothesis.effect->name, f.hypothesis.axis_name()), explanation(f)});
   for (const diagnose::NoiseFinding& f : d.noise)
-    section.notes.push_back(
-        {report::Note::Kind::kWarning, fmt::format("{} {} {}", f.name, f.sensor, f.axis), explanation(f)});
+    section.notes.push_back({report::Note::Kind::kWarning, fmt::format("{} {} {}", f.name, f.sensor, f.axis), explanation(f)});
   section.tables.push_back(finding_table(d));
   return section;
 }
@@ -119,10 +118,11 @@ report::Section fit_section(const Diagnosis& d) {
       cells({"outages of 20 s, rms of horizontal maxima, m", number(d.before.outage_rms_m), number(d.after.outage_rms_m)})};
   section.tables.push_back(std::move(table));
   if (d.held_out)
-    section.notes.push_back({report::Note::Kind::kInfo, "On data that the sizes were not estimated from",
-                             fmt::format("Sizes from one half of the mission, in alternating blocks, on the other: logarithm of the "
-                                         "likelihood ratio {:.1f} +- {:.1f}, better in {:.0f} % of {} blocks.",
-                                         d.held_out->gain, d.held_out->gain_sd, 100.0 * d.held_out->better, d.held_out->blocks)});
+    section.notes.push_back(
+        {report::Note::Kind::kInfo, "On data that the sizes were not estimated from",
+         fmt::format("Sizes from one half of the mission, in alternating blocks, on the other: logarithm of the "
+                     "likelihood ratio {:.1f} +- {:.1f}, better in {:.0f} % of {} blocks.",
+                     d.held_out->gain, d.held_out->gain_sd, 100.0 * d.held_out->better, d.held_out->blocks)});
   for (const std::string& name : d.rejected)
     section.notes.push_back({report::Note::Kind::kWarning, "Given up",
                              fmt::format("{}: its size from one half of the mission makes the other half less likely.", name)});

@@ -30,7 +30,9 @@ report::Panel twin_panel(const diagnose::Diagnosis& d) {
   report::Panel panel;
   panel.id = "twin-figures";
   panel.title = "Figures of the recording, from their twins' median";
-  panel.caption = "In halves of the distance between the twins' 5 % and 95 %. Inside the boxes' whiskers the model tells what the recording shows.";
+  panel.caption =
+      "In halves of the distance between the twins' 5 % and 95 %. Inside the boxes' whiskers the model tells what the "
+      "recording shows.";
   panel.plots.resize(1);
   report::Plot& plot = panel.plot();
   plot.x.label = "distance";
@@ -66,13 +68,17 @@ report::Section twin_section(const diagnose::Diagnosis& d, const std::optional<S
   section.id = "twins";
   section.title = "The recording among its twins";
   section.lead =
-      simulation ? fmt::format("Figures of the recording beside those of {}. p: that any figure of a simulated recording lies as far out.",
-                               simulation->source)
-                 : std::string("Recordings of the same motion, simulated as the model says and run through the same steps. p: that "
-                               "any figure of a twin lies as far out by chance.");
+      simulation
+          ? fmt::format(
+                "Figures of the recording beside those of {}. p: that any figure of a simulated recording lies as far out.",
+                simulation->source)
+          : std::string(
+                "Recordings of the same motion, simulated as the model says and run through the same steps. p: that "
+                "any figure of a twin lies as far out by chance.");
   section.panels.push_back(twin_panel(d));
   section.tables.push_back(twin_table("twins-before", "Of the configured model", d.twins));
-  if (!d.twins_after.empty()) section.tables.push_back(twin_table("twins-after", "Of the model with what was found", d.twins_after));
+  if (!d.twins_after.empty())
+    section.tables.push_back(twin_table("twins-after", "Of the model with what was found", d.twins_after));
   return section;
 }
 

@@ -151,7 +151,8 @@ diagnose::NamedEffect named_effect(const Node& item) {
       for (const diagnose::Relation& r : diagnose::relations()) relations.push_back(r.name);
       one.suggested = diagnose::unknown_relation(site, axis, std::string(relations[item.at("relation").choice(relations)]));
     } else {
-      one.suggested = diagnose::harmonic_disturbance(site, axis, item.at("frequency_hz").number(), item.at("phase_rad").number());
+      one.suggested =
+          diagnose::harmonic_disturbance(site, axis, item.at("frequency_hz").number(), item.at("phase_rad").number());
     }
     one.effect = one.suggested.get();
   } else {

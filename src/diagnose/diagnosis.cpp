@@ -39,9 +39,8 @@ void hold_out(Search& search, Diagnosis& notes) {
       for (std::size_t i = 0; i < effects.size(); ++i) search.set_held_out(i, effects[i].gain);
       return;
     }
-    const auto worst = std::ranges::min_element(effects, [](const auto& a, const auto& b) {
-      return std::pair(a.holds(), a.gain) < std::pair(b.holds(), b.gain);
-    });
+    const auto worst = std::ranges::min_element(
+        effects, [](const auto& a, const auto& b) { return std::pair(a.holds(), a.gain) < std::pair(b.holds(), b.gain); });
     const auto index = static_cast<std::size_t>(worst - effects.begin());
     const Hypothesis& h = search.run().hypotheses()[search.taken()[index].hypothesis];
     notes.rejected.push_back(std::string(h.effect->name) + (h.axis_name().empty() ? "" : " " + h.axis_name()));
@@ -71,7 +70,7 @@ Diagnosis diagnose(const MissionInput& input, const DiagnosisOptions& options, c
   const auto twins = static_cast<std::size_t>(std::max(0, options.twins));
   Diagnosis notes;
   const auto compared = [&](const std::vector<MissionInput>& given) {
-    const MissionInput model = search.modelled();
+    const MissionInput& model = search.modelled();
     const std::vector<record::NavState>& path = search.run().path();
     const auto recording = [&](std::size_t i) {
       if (!given.empty()) return given[i];

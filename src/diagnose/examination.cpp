@@ -39,8 +39,7 @@ class DisturbanceRecorder {
     for (std::size_t axis = 0; axis < kAxes; ++axis) {
       Eigen::VectorXd now(rows_);
       now << -e.r_effects(step_[axis]), -e.null_r_effects.row(step_[axis]).head(rows_ - 1).transpose();
-      if (is_interval)
-        into_.score[axis].col(static_cast<Eigen::Index>(left_)) = (now - behind_[axis]).cast<float>();
+      if (is_interval) into_.score[axis].col(static_cast<Eigen::Index>(left_)) = (now - behind_[axis]).cast<float>();
       behind_[axis] = std::move(now);
     }
     if (is_interval) {

@@ -65,8 +65,7 @@ struct Line {
 /// Mean over an interval of every relation less that over the mission, a row a relation.
 Eigen::MatrixXd relation_means(const Disturbances& d, const MissionRun& run) {
   const std::vector<Relation>& all = relations();
-  Eigen::MatrixXd means =
-      Eigen::MatrixXd::Zero(static_cast<Eigen::Index>(all.size()), static_cast<Eigen::Index>(d.t.size()));
+  Eigen::MatrixXd means = Eigen::MatrixXd::Zero(static_cast<Eigen::Index>(all.size()), static_cast<Eigen::Index>(d.t.size()));
   Eigen::VectorXd count = Eigen::VectorXd::Zero(means.cols());
   run.for_each_sample([&](std::size_t, geo::GpsTime t, const Signals& signals) {
     const auto behind = std::ranges::upper_bound(d.t, t);
@@ -147,8 +146,9 @@ std::optional<Proposal> strongest_line(const Examination& examination) {
   std::ranges::transform(largest, ratios.begin(), for_one_degree);
   const LargestByChance chance = LargestByChance::of(std::move(ratios));
   // The phase only says where the two coefficients begin: they are found together.
-  return Proposal{harmonic_disturbance(site_of(line.axis), static_cast<int>(line.axis % 3), periodogram.frequency(line.bin), phase),
-                  2.0 * line.ratio, chance.p_value(for_one_degree(line.ratio)), std::log(chance.count)};
+  return Proposal{
+      harmonic_disturbance(site_of(line.axis), static_cast<int>(line.axis % 3), periodogram.frequency(line.bin), phase),
+      2.0 * line.ratio, chance.p_value(for_one_degree(line.ratio)), std::log(chance.count)};
 }
 
 std::optional<Proposal> likeliest_relation(const Examination& examination, const MissionRun& run) {
@@ -182,9 +182,9 @@ std::optional<Proposal> likeliest_relation(const Examination& examination, const
   const double peak = ratio.maxCoeff(&best);
   const LargestByChance chance = LargestByChance::of({largest.begin(), largest.end()});
   const auto axis = static_cast<std::size_t>(best / count);
-  return Proposal{unknown_relation(site_of(axis), static_cast<int>(axis % 3),
-                                   relations()[static_cast<std::size_t>(best % count)].name),
-                  peak, chance.p_value(peak), std::log(static_cast<double>(ratio.size())), stability_of(scores, best)};
+  return Proposal{
+      unknown_relation(site_of(axis), static_cast<int>(axis % 3), relations()[static_cast<std::size_t>(best % count)].name),
+      peak, chance.p_value(peak), std::log(static_cast<double>(ratio.size())), stability_of(scores, best)};
 }
 
 }  // namespace coast::diagnose

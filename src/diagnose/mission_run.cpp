@@ -6,7 +6,8 @@
 
 namespace coast::diagnose {
 
-MissionRun::MissionRun(MissionInput input, Grade grade, const std::vector<EffectPtr>& suggested, const study::Progress& progress)
+MissionRun::MissionRun(MissionInput input, Grade grade, const std::vector<EffectPtr>& suggested,
+                       const study::Progress& progress)
     : mission_(std::move(input.imu), std::move(input.gnss), std::move(input.setup), progress),
       hypotheses_(mission_.mission(), grade, suggested) {
   study::SolutionOutputs outputs;

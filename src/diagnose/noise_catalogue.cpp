@@ -7,7 +7,7 @@ namespace coast::diagnose {
 
 const std::vector<NoiseEffect>& noise_catalogue() {
   static const std::vector<NoiseEffect> effects{
-      extra_gauss_markov_bias(Site::kGyro), extra_gauss_markov_bias(Site::kAccel),  flicker_noise(Site::kGyro),
+      extra_gauss_markov_bias(Site::kGyro), extra_gauss_markov_bias(Site::kAccel), flicker_noise(Site::kGyro),
       flicker_noise(Site::kAccel),          dynamics_dependent_noise(Site::kGyro), dynamics_dependent_noise(Site::kAccel),
   };
   return effects;

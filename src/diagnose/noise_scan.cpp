@@ -45,16 +45,16 @@ std::vector<double> level_of(const NoiseEffect& effect, const std::vector<geo::G
 }
 
 NoiseSuspicions noise_suspicions(const Examination& examination, const MissionRun& run) {
-  constexpr double kFewest = 20.0;  // intervals: below, nothing can be said of a variance
+  constexpr std::size_t kLeast = 20;  // intervals: below, nothing can be said of a variance
   const Disturbances& d = examination.disturbances;
   NoiseSuspicions result;
-  if (static_cast<double>(d.t.size()) < kFewest || d.score[0].rows() < 3) return result;
+  if (d.t.size() < kLeast || d.score[0].rows() < 3) return result;
   std::vector<double> largest(static_cast<std::size_t>(d.score[0].rows() - 1), 0.0);
   for (const NoiseEffect& effect : noise_catalogue()) {
     const std::vector<double> level = level_of(effect, d.t, run);
     for (int axis = 0; axis < 3; ++axis)
       for (const double time : effect.times) {
-        const auto row = static_cast<std::size_t>(axis + (effect.site == Site::kGyro ? 0 : 3));
+        const std::size_t row = static_cast<std::size_t>(axis) + (effect.site == Site::kGyro ? 0U : 3U);
         const Eigen::ArrayXd power = effect.power(d, d.score[row], level, time).cast<double>();
         const PowerByChance chance(power.tail(power.size() - 1));
         if (!(chance.variance > 0.0) || !(chance.mean > 0.0)) continue;
@@ -62,7 +62,8 @@ NoiseSuspicions noise_suspicions(const Examination& examination, const MissionRu
           largest[i] = std::max(largest[i], chance.likelihood_ratio(power(static_cast<Eigen::Index>(i) + 1)));
         const double variance = chance.scored_variance(power(0));
         if (variance > 0.0)
-          result.all.push_back({{&effect, axis, std::sqrt(variance), time, d.t, level}, chance.likelihood_ratio(power(0)), 1.0});
+          result.all.push_back(
+              {{&effect, axis, std::sqrt(variance), time, d.t, level}, chance.likelihood_ratio(power(0)), 1.0});
       }
   }
   result.chance = LargestByChance::of(largest);
@@ -80,7 +81,8 @@ FittedEffect fitted_effect(const AddedNoise& from, const MissionInput& input, co
     AddedNoise noise = from;
     noise.root = std::exp(log_root);
     noise.add_to(with);
-    if (with.setup.start) with.setup.start_sensor_errors = sensor_states_in(layout_of(with), layout, input.setup.start_sensor_errors);
+    if (with.setup.start)
+      with.setup.start_sensor_errors = sensor_states_in(layout_of(with), layout, input.setup.start_sensor_errors);
     return forward(std::move(with)).log_likelihood - without;
   };
   double x = std::log(from.root);

@@ -21,7 +21,8 @@ struct AddedNoise {
 };
 
 /// What the variance of an effect is proportional to, in means over the intervals that begin at `t`; ones where it is constant.
-[[nodiscard]] std::vector<double> level_of(const NoiseEffect& effect, const std::vector<geo::GpsTime>& t, const MissionRun& run);
+[[nodiscard]] std::vector<double> level_of(const NoiseEffect& effect, const std::vector<geo::GpsTime>& t,
+                                           const MissionRun& run);
 
 /// Score test of one random effect.
 struct NoiseSuspicion {
@@ -42,8 +43,8 @@ struct FittedEffect {
   double gain = 0.0;    ///< logarithm of the likelihood ratio against none
 };
 /// @param input  of the run, which has the log-likelihood `without`  @param layout  of its filter
-[[nodiscard]] FittedEffect fitted_effect(const AddedNoise& from, const MissionInput& input,
-                                         const estimate::StateLayout& layout, double without);
+[[nodiscard]] FittedEffect fitted_effect(const AddedNoise& from, const MissionInput& input, const estimate::StateLayout& layout,
+                                         double without);
 
 /// Sensor states of one layout in another that has more processes: what is new is zero.
 [[nodiscard]] Eigen::VectorXd sensor_states_in(const estimate::StateLayout& to, const estimate::StateLayout& from,

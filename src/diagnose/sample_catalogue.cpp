@@ -37,7 +37,7 @@ void raise_noise(MissionInput& input, Site site, int axis, const std::vector<Rai
   for (const record::NoiseLevel& level : input.imu.noise) edges.insert(edges.end(), {level.from, level.to});
   for (const RaisedNoise& one : stretches) edges.insert(edges.end(), {one.from, one.to});
   std::ranges::sort(edges);
-  edges.erase(std::ranges::unique(edges).begin(), edges.end());
+  edges.erase(std::unique(edges.begin(), edges.end()), edges.end());
   const std::vector<record::NoiseLevel> before = std::move(input.imu.noise);
   input.imu.noise.clear();
   auto old = before.begin();

@@ -9,9 +9,9 @@ namespace coast::diagnose {
 
 namespace {
 
-constexpr double kSettled = 0.1;       // sd that a coefficient may still move
-constexpr double kStable = 0.5;            // of a relation, from where it is believed
-constexpr double kUncertain = 0.1;         // of a likelihood ratio whose variance is that of some hundred draws
+constexpr double kSettled = 0.1;    // sd that a coefficient may still move
+constexpr double kStable = 0.5;     // of a relation, from where it is believed
+constexpr double kUncertain = 0.1;  // of a likelihood ratio whose variance is that of some hundred draws
 
 /// A start that the data decide: it was found by a run that knew nothing of the effect, which may be in it. The filter is
 /// linearised about what that run found of the sensors too: with biases at their prior mean, tilts are wrong by mrad until the
@@ -46,7 +46,11 @@ std::optional<std::pair<double, double>> at_onset(const Examination& e, const Ta
 }  // namespace
 
 Search::Search(const MissionInput& input, const DiagnosisOptions& options, const study::Progress& progress)
-    : options_(options), progress_(progress), input_(input), grade_(grade_of(input.setup.model)), noise_is_asked_for_(input.setup.noise_fit.has_value()) {
+    : options_(options),
+      progress_(progress),
+      input_(input),
+      grade_(grade_of(input.setup.model)),
+      noise_is_asked_for_(input.setup.noise_fit.has_value()) {
   input_.setup.filter.gate_probability = 0.0;  // what a gate refuses cannot be explained
   input_.setup.noise_fit.reset();
   run_again();
@@ -236,8 +240,8 @@ EffectPtr Search::refined(const EffectPtr& line) {
   const std::vector<EffectPtr> before = suggested_;
   std::vector<EffectPtr> lines;
   for (int i = -kSide; i <= kSide; ++i)
-    lines.push_back(harmonic_disturbance(line->site, line->axes.front().front() - 'x',
-                                         line->fixed[0].value + i * kStep / span, line->fixed[1].value));
+    lines.push_back(harmonic_disturbance(line->site, line->axes.front().front() - 'x', line->fixed[0].value + i * kStep / span,
+                                         line->fixed[1].value));
   suggested_.insert(suggested_.end(), lines.begin(), lines.end());
   const std::unique_ptr<MissionRun> start = std::move(run_);
   run_from(*start);
@@ -267,7 +271,11 @@ void Search::try_out(const Proposal& form, double to_beat) {
   run_from(*start);
   const auto first = static_cast<Eigen::Index>(run_->hypotheses().size()) - static_cast<Eigen::Index>(form.effect->axes.size());
   for (Eigen::Index i = first; i < run_->hypotheses().size(); ++i)
-    take({.hypothesis = i, .from = {}, .likelihood_ratio = form.likelihood_ratio, .log_bayes = 0.5 * form.likelihood_ratio - form.log_places, .p_value = form.p_value});
+    take({.hypothesis = i,
+          .from = {},
+          .likelihood_ratio = form.likelihood_ratio,
+          .log_bayes = 0.5 * form.likelihood_ratio - form.log_places,
+          .p_value = form.p_value});
   static_cast<void>(follow(examined()));
   run_again();
   const double gained = run_->log_likelihood() - before;
@@ -292,9 +300,7 @@ bool Search::was_refused(const Suspicion& s) const {
 const Suspicion* Search::likeliest() const {
   const Suspicion* best = nullptr;
   for (const Suspicion& s : suspicions_.all)
-    if (!was_refused(s) && s.p_value < of_catalogue() &&
-        (best == nullptr || s.log_bayes > best->log_bayes))
-      best = &s;
+    if (!was_refused(s) && s.p_value < of_catalogue() && (best == nullptr || s.log_bayes > best->log_bayes)) best = &s;
   return best;
 }
 
@@ -314,15 +320,16 @@ void Search::take(const Suspicion& s) {
                   .sd = s.sd,
                   .p_value = s.p_value,
                   .held_out_gain = {},
-                    .alternatives = {},
+                  .alternatives = {},
                   .stability = {}};
   for (const Suspicion& other : suspicions_.all)
     if (other.hypothesis != s.hypothesis &&
         (s.log_bayes - other.log_bayes < kLogOdds || s.likelihood_ratio - other.likelihood_ratio < 2.0 * kLogOdds))
-      finding.alternatives.push_back(alternative(other, std::max(s.log_bayes - other.log_bayes,
-                                                                 0.5 * (s.likelihood_ratio - other.likelihood_ratio))));
+      finding.alternatives.push_back(
+          alternative(other, std::max(s.log_bayes - other.log_bayes, 0.5 * (s.likelihood_ratio - other.likelihood_ratio))));
   for (const FittedEffect& fit : beaten_)
-    if (0.5 * s.likelihood_ratio - fit.gain < kLogOdds) finding.alternatives.push_back(diagnose::alternative(fit, 0.5 * s.likelihood_ratio));
+    if (0.5 * s.likelihood_ratio - fit.gain < kLogOdds)
+      finding.alternatives.push_back(diagnose::alternative(fit, 0.5 * s.likelihood_ratio));
   std::ranges::sort(finding.alternatives, {}, &Alternative::log_odds);
   result_.findings.push_back(std::move(finding));
 }

@@ -71,8 +71,8 @@ class Search {
   /// Takes an effect and runs without it. Where the mission is not linear over the effect's size the first estimate is too
   /// large: it is halved until the likelihood rises. One that never does so is refused for good.
   void try_out(const Suspicion& s);
-  /// Its coefficients are found together with those that are taken already. Refused for good where it does not explain more than
-  /// the likeliest effect that has a name.
+  /// Its coefficients are found together with those that are taken already. Refused for good where it does not explain more
+  /// than the likeliest effect that has a name.
   void try_out(const Proposal& form, double to_beat);
   /// The likeliest frequency near that of a line, which the periodogram knows to a fraction of its width.
   [[nodiscard]] EffectPtr refined(const EffectPtr& line);

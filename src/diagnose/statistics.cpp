@@ -104,7 +104,8 @@ void add_disturbances(const Disturbances& d, std::vector<Statistic>& figures) {
     for (const double time : kTimes) {
       const Eigen::ArrayXf power = gauss_markov_power(d, d.score[axis], time);
       const float by_chance = power.tail(power.size() - 1).mean();
-      figures.push_back({fmt::format("wandering of {} {} over {:g} s", axis < 3 ? "gyro" : "accel", axis_letter(static_cast<int>(axis % 3)), time),
+      figures.push_back({fmt::format("wandering of {} {} over {:g} s", axis < 3 ? "gyro" : "accel",
+                                     axis_letter(static_cast<int>(axis % 3)), time),
                          by_chance > 0.0F ? std::log(static_cast<double>(power(0)) / static_cast<double>(by_chance)) : 0.0});
     }
 }

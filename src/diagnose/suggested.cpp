@@ -13,7 +13,7 @@ namespace coast::diagnose {
 
 namespace {
 
-constexpr std::array kBasic{"omega_x", "omega_y", "omega_z", "f_x",   "f_y",         "f_z",         "alpha_x",
+constexpr std::array kBasic{"omega_x", "omega_y", "omega_z", "f_x",          "f_y",          "f_z",        "alpha_x",
                             "alpha_y", "alpha_z", "speed",   "sin(heading)", "cos(heading)", "temperature"};
 
 std::string_view unit_of(Site site) {

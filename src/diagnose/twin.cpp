@@ -124,9 +124,8 @@ record::GnssRecording fixes_along(const ErrorFree& mission, const MissionInput& 
     const Eigen::Matrix3d C_n_e = geo::C_n_e(geo::geodetic_from_ecef(r));
     fix.r_ea_e = r + C_b_e * arm_b + C_n_e * error_n;
     if (fix.velocity)
-      fix.velocity->v_ea_n =
-          C_n_e.transpose() * (a.v_eb_e + since * acceleration + C_b_e * omega_eb_b.cross(arm_b)) +
-          errors.velocity(fix.velocity->cov_n);
+      fix.velocity->v_ea_n = C_n_e.transpose() * (a.v_eb_e + since * acceleration + C_b_e * omega_eb_b.cross(arm_b)) +
+                             errors.velocity(fix.velocity->cov_n);
     gnss.fixes.push_back(fix);
   }
   return gnss;

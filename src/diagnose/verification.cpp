@@ -54,8 +54,7 @@ Verification verify(const Search& search) {
   Verification result;
   result.effects.resize(search.taken().size());
   for (std::size_t fold = 0; fold < 2; ++fold) {
-    const Examination examination =
-        search.examined([&](geo::GpsTime t) { return blocks.of(t) % 2 != fold; }, 0);
+    const Examination examination = search.examined([&](geo::GpsTime t) { return blocks.of(t) % 2 != fold; }, 0);
     std::vector<Taken> values = search.taken();
     const Movement moved = movement(examination, values);
     for (std::size_t i = 0; i < values.size(); ++i) values[i].value += moved.by[i];

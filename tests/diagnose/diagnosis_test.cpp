@@ -170,7 +170,8 @@ TEST(Diagnosis, ARelationWithoutANameIsTold) {
 TEST(Diagnosis, ASaturatedGyroIsFoundAndMended) {
   MissionInput input = test::honest_mission(11);
   double largest = 0.0;
-  for (const record::ImuSample& sample : input.imu.samples) largest = std::max(largest, std::abs(sample.dtheta.z() / sample.dt));
+  for (const record::ImuSample& sample : input.imu.samples)
+    largest = std::max(largest, std::abs(sample.dtheta.z() / sample.dt));
   const double limit = 0.7 * largest;
   for (record::ImuSample& sample : input.imu.samples)
     sample.dtheta.z() = std::clamp(sample.dtheta.z() / sample.dt, -limit, limit) * sample.dt;

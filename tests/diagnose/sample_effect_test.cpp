@@ -70,7 +70,8 @@ TEST(SampleEffects, AnUpperAndALowerLimitAreFound) {
   EXPECT_NEAR(sample_effect("saturation").find(low).value_or(0.0), -0.8, 1e-12);
 }
 
-// Half a sine beyond the limit, cut at 80 % of its height: the cubic with the slopes at the cut leaves a tenth of what was lost.
+// Half a sine beyond the limit, cut at 80 % of its height: the cubic with the slopes at the cut leaves a tenth of what was
+// lost.
 TEST(SampleEffects, WhatASaturatedSensorMissedIsMended) {
   MissionInput input;
   input.imu.rate_hz = 100.0;
@@ -80,7 +81,8 @@ TEST(SampleEffects, WhatASaturatedSensorMissedIsMended) {
   for (int i = 0; i < 1000; ++i) {
     const double rate = std::sin(0.02 * i);
     truth += 0.01 * rate;
-    input.imu.samples.push_back({start + 0.01 * (i + 1), 0.01, {0.0, 0.0, 0.01 * std::clamp(rate, -kLimit, kLimit)}, Eigen::Vector3d::Zero()});
+    input.imu.samples.push_back(
+        {start + 0.01 * (i + 1), 0.01, {0.0, 0.0, 0.01 * std::clamp(rate, -kLimit, kLimit)}, Eigen::Vector3d::Zero()});
   }
   const auto sum = [&] {
     double total = 0.0;

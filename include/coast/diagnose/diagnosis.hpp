@@ -70,8 +70,8 @@ struct NoiseFinding {
 /// Fit of one run.
 struct Fit {
   double log_likelihood_per_epoch = 0.0;
-  double nis = 0.0;           ///< mean over degrees of freedom
-  double outage_rms_m = 0.0;  ///< horizontal maxima of forward outages, against the run's own smoothed trajectory
+  double nis = 0.0;                    ///< mean over degrees of freedom
+  double outage_rms_m = 0.0;           ///< horizontal maxima of forward outages, against the run's own smoothed trajectory
   std::vector<double> outages_m = {};  ///< one by one
 };
 
@@ -86,9 +86,9 @@ struct TwinStatistic {
 /// Effects with sizes from one half of the mission, in alternating blocks, on the other half, and the other way round.
 struct HeldOut {
   int blocks = 0;
-  double gain = 0.0;  ///< logarithm of the likelihood ratio, all blocks together
-  double gain_sd = 0.0;  ///< by the spread from block to block
-  double better = 0.0;   ///< share of blocks
+  double gain = 0.0;                                     ///< logarithm of the likelihood ratio, all blocks together
+  double gain_sd = 0.0;                                  ///< by the spread from block to block
+  double better = 0.0;                                   ///< share of blocks
   double before_per_epoch = 0.0, after_per_epoch = 0.0;  ///< log-likelihood of an epoch but for a constant
 };
 

@@ -24,8 +24,8 @@ struct Disturbances {
   std::array<Eigen::MatrixXf, kAxes> score;
 };
 
-/// One random effect. Its score test (Harvey 1989, section 5.1): with a_k the score of the error of interval k, the score of the
-/// variance of a process is half of a sum of squares of sums of a_k, less what that is by chance.
+/// One random effect. Its score test (Harvey 1989, section 5.1): with a_k the score of the error of interval k, the score of
+/// the variance of a process is half of a sum of squares of sums of a_k, less what that is by chance.
 struct NoiseEffect {
   std::string_view name{};
   Site site = Site::kGyro;
@@ -39,7 +39,8 @@ struct NoiseEffect {
   /// What the variance is proportional to; empty: it is the same all the time.
   std::function<double(const Signals&)> level = {};
   /// The sum of squares, for every row of the scores. @param level  mean over each interval; ones where it has none
-  std::function<Eigen::ArrayXf(const Disturbances&, const Eigen::MatrixXf& score, const std::vector<double>& level, double time)>
+  std::function<Eigen::ArrayXf(const Disturbances&, const Eigen::MatrixXf& score, const std::vector<double>& level,
+                               double time)>
       power = {};
   /// Adds it to a mission's model. @param axis  0 to 2  @param t, level  beginnings of intervals and the means over them
   std::function<void(MissionInput&, int axis, double root, double time, const std::vector<geo::GpsTime>& t,

@@ -14,8 +14,8 @@ struct MissionInput;
 
 /// One axis of a sensor as its converter delivered it: rates or specific forces.
 struct AxisSeries {
-  Eigen::ArrayXd values;       ///< sensor axis, rad/s or m/s^2
-  double white_sd = 0.0;       ///< of a sample, by the error model
+  Eigen::ArrayXd values;         ///< sensor axis, rad/s or m/s^2
+  double white_sd = 0.0;         ///< of a sample, by the error model
   bool rounding_stated = false;  ///< the error model knows of a rounding
 };
 [[nodiscard]] AxisSeries axis_series(const MissionInput& input, Site site, int axis);

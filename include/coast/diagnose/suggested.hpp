@@ -11,7 +11,8 @@ namespace coast::diagnose {
 
 using EffectPtr = std::shared_ptr<const Effect>;
 
-/// harmonic_disturbance of one axis. Two coefficients: of sin(2 pi f t + phase) and of the cosine, t since the recording's start.
+/// harmonic_disturbance of one axis. Two coefficients: of sin(2 pi f t + phase) and of the cosine, t since the recording's
+/// start.
 /// @param frequency Hz  @param phase rad
 [[nodiscard]] EffectPtr harmonic_disturbance(Site site, int axis, double frequency, double phase);
 

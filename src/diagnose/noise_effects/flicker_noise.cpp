@@ -9,7 +9,7 @@ namespace {
 // One process for each factor of e in correlation time: equal variances add up to a density of B^2/(2 pi f) where
 // sigma^2 = B^2/pi (src/noise/processes/flicker.cpp).
 constexpr double kRatio = 2.718281828459045;
-constexpr double kShortest = 1.0;   // s
+constexpr double kShortest = 1.0;    // s
 constexpr double kLongest = 3000.0;  // s
 
 template <typename Take>

@@ -65,8 +65,8 @@ double slope(const Eigen::ArrayXd& values, Eigen::Index from, Eigen::Index to) {
   return (x * values.segment(from, n)).sum() / x.square().sum();
 }
 
-/// Beyond the limit the signal is taken for the cubic that goes on with the slopes on either side; of its mean height a third is
-/// the uncertainty of all of it together.
+/// Beyond the limit the signal is taken for the cubic that goes on with the slopes on either side; of its mean height a third
+/// is the uncertainty of all of it together.
 void mend(MissionInput& input, Site site, int axis, double limit) {
   constexpr Eigen::Index kSlope = 8;  // samples
   constexpr double kUncertain = 0.33;
@@ -78,8 +78,8 @@ void mend(MissionInput& input, Site site, int axis, double limit) {
     const double sign = side > 0.0 ? 1.0 : -1.0;
     for (const Episode& e : episodes(series.values, side)) {
       const double up = std::max(0.0, sign * slope(series.values, std::max<Eigen::Index>(0, e.first - kSlope), e.first));
-      const double down = std::max(
-          0.0, -sign * slope(series.values, e.last + 1, std::min(series.values.size(), e.last + 1 + kSlope)));
+      const double down =
+          std::max(0.0, -sign * slope(series.values, e.last + 1, std::min(series.values.size(), e.last + 1 + kSlope)));
       const auto length = static_cast<double>(e.last - e.first + 2);  // steps between the samples on either side
       double sum = 0.0;
       for (Eigen::Index i = e.first; i <= e.last; ++i) {

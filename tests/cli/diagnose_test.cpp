@@ -1,0 +1,187 @@
+// coast diagnose as a user runs it, and `effects:` of a run.
+
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <string>
+
+#include "program.hpp"
+#include "support/schema.hpp"
+#include "support/support.hpp"
+
+namespace coast::cli {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr const char* kCityDrive = R"(
+schema: coast.scenario/1
+trajectory: {kind: city, duration_s: 300, static_s: 20, origin_deg_m: [46.52, 6.57, 400], course_deg: 30}
+imu: {rate_hz: 50, error_model: model.yaml, lever_arm_m: [0.3, -0.2, -1.1]}
+gnss: {rate_hz: 2, phase_s: 0.013, sd_m: [0.01, 0.01, 0.02], velocity_sd_mps: [0.03, 0.03, 0.05]}
+start_gps: {week: 2374, sow: 208800}
+seed: 2
+)";
+
+/// A simulated recording, made once for the tests of this file; its scenario.yaml is in the folder above.
+const fs::path& city_drive() {
+  static const test::TemporaryDirectory folder;
+  static const fs::path made = simulated_recording(kCityDrive, folder.path());
+  return made;
+}
+
+constexpr double kTooFarRight = 0.2;  // m
+
+/// A run of the recording with the antenna too far right.
+fs::path wrong_lever_arm() {
+  std::string text = text_of(city_drive() / "run.yaml");
+  const std::string key = "lever_arm_m: [";
+  const auto from = text.find(key);
+  const auto to = text.find(']', from);
+  EXPECT_NE(to, std::string::npos) << text;
+  text.replace(from, to - from, fmt::format("{}0.3, {}, -1.1", key, -0.2 + kTooFarRight));
+  write(city_drive() / "wrong.yaml", text);
+  return city_drive() / "wrong.yaml";
+}
+
+/// What `coast diagnose` with three twins says; valid, with all its files.
+nlohmann::json diagnosed(const fs::path& run_yaml, const fs::path& out, const std::string& options, const fs::path& folder) {
+  const Outcome outcome =
+      run(fmt::format("diagnose '{}' --twins 3 {} --out '{}'", run_yaml.string(), options, out.string()), folder);
+  EXPECT_EQ(outcome.status, 0) << outcome.error;
+  if (outcome.status != 0) return {};
+  for (const char* name : {"diagnosis.json", "run.diagnosed.yaml", "report.json", "report.html"})
+    EXPECT_TRUE(fs::exists(out / name)) << name;
+  nlohmann::json diagnosis = nlohmann::json::parse(text_of(out / "diagnosis.json"));
+  test::expect_valid("diagnosis", diagnosis);
+  test::expect_valid("run", test::load_yaml_as_json(out / "run.diagnosed.yaml"));
+  return diagnosis;
+}
+
+/// The effect of that name and axis; null where there is none.
+nlohmann::json named_in(const nlohmann::json& effects, const std::string& name, const std::string& axis) {
+  for (const nlohmann::json& effect : effects)
+    if (effect.at("name") == name && effect.at("axis") == axis) return effect;
+  return nullptr;
+}
+
+/// Mean of NIS over its expectation of a run.
+double nis_of_run(const fs::path& run_yaml, const fs::path& out, const fs::path& folder) {
+  const Outcome outcome = run(fmt::format("process '{}' --out '{}'", run_yaml.string(), out.string()), folder);
+  EXPECT_EQ(outcome.status, 0) << outcome.error;
+  if (outcome.status != 0) return std::nan("");
+  const auto nis = nlohmann::json::parse(text_of(out / "summary.json")).at("nis");
+  return nis.at("mean").get<double>() / nis.at("expected").get<double>();
+}
+
+TEST(DiagnoseCommand, FindsAWrongLeverArmAndTheRunWithoutItFits) {
+  const test::TemporaryDirectory folder;
+  const fs::path wrong = wrong_lever_arm();
+  const fs::path out = folder.path() / "found";
+  const nlohmann::json diagnosis = diagnosed(wrong, out, "", folder.path());
+  ASSERT_TRUE(diagnosis.is_object());
+  EXPECT_EQ(diagnosis["mismatch"], true);
+  EXPECT_FALSE(diagnosis.contains("simulation"));
+  const nlohmann::json effect = named_in(diagnosis["effects"], "lever_arm_error", "y");
+  ASSERT_TRUE(effect.is_object()) << diagnosis["effects"];
+  EXPECT_FALSE(effect.contains("in_simulation"));
+  const nlohmann::json& size = effect["parameters"][0];
+  EXPECT_NEAR(size["value"].get<double>(), -kTooFarRight, 4.0 * size["std"].get<double>());
+  EXPECT_FALSE(diagnosis["twins"].empty());
+  const nlohmann::json& verification = diagnosis["verification"];
+  EXPECT_LT(verification["nis"][1].get<double>(), verification["nis"][0].get<double>());
+  EXPECT_TRUE(verification.contains("twins"));
+  EXPECT_TRUE(verification.contains("held_out"));
+
+  const double before = nis_of_run(wrong, folder.path() / "before", folder.path());
+  const double after = nis_of_run(out / "run.diagnosed.yaml", folder.path() / "after", folder.path());
+  EXPECT_LT(after, before);
+  // 560 epochs of six components: the mean has a standard deviation of sqrt(2 / 3360) = 0.024.
+  EXPECT_NEAR(after, 1.0, 0.1);
+
+  // It seeks from nothing: a run with effects that were found already is refused.
+  const Outcome again = run(fmt::format("diagnose '{}'", (out / "run.diagnosed.yaml").string()), folder.path());
+  EXPECT_EQ(again.status, 2) << again.error;
+  EXPECT_NE(again.error.find("run.diagnosed.yaml"), std::string::npos) << again.error;
+  EXPECT_NE(again.error.find("effects"), std::string::npos) << again.error;
+}
+
+TEST(DiagnoseCommand, SaysWhatTheUsersOwnSimulationLacks) {
+  const test::TemporaryDirectory folder;
+  const fs::path scenario = city_drive().parent_path() / "scenario.yaml";
+  const nlohmann::json diagnosis =
+      diagnosed(wrong_lever_arm(), folder.path() / "found", fmt::format("--simulation '{}'", scenario.string()), folder.path());
+  ASSERT_TRUE(diagnosis.contains("simulation"));
+  EXPECT_EQ(diagnosis["simulation"]["source"], scenario.string());
+  EXPECT_TRUE(named_in(diagnosis["simulation"]["effects"], "lever_arm_error", "y").is_null());
+  const nlohmann::json effect = named_in(diagnosis["effects"], "lever_arm_error", "y");
+  ASSERT_TRUE(effect.is_object()) << diagnosis["effects"];
+  EXPECT_EQ(effect["in_simulation"], false);
+  EXPECT_FALSE(diagnosis["twins"].empty());  // three seeds in their place
+}
+
+TEST(DiagnoseCommand, TakesNoSimulationThatIsNotThere) {
+  const test::TemporaryDirectory folder;
+  const Outcome outcome = run(fmt::format("diagnose '{}' --simulation none.yaml --out '{}'", wrong_lever_arm().string(),
+                                          (folder.path() / "out").string()),
+                              folder.path());
+  EXPECT_EQ(outcome.status, 2) << outcome.error;
+  EXPECT_NE(outcome.error.find("none.yaml"), std::string::npos) << outcome.error;
+}
+
+struct SpoiledEffect {
+  const char* what;
+  const char* entry;    ///< of `effects:`
+  const char* message;  ///< must be part of standard error
+};
+
+class SpoiledEffects : public testing::TestWithParam<SpoiledEffect> {};
+
+TEST_P(SpoiledEffects, EndWithStatusTwoAndNameFileAndLine) {
+  const test::TemporaryDirectory folder;
+  const std::string good = text_of(city_drive() / "run.yaml");
+  const fs::path file = city_drive() / "spoiled_effects.yaml";
+  write(file,
+        good + "effects:\n  - {name: lever_arm_error, sensor: antenna, axis: y, value: 0.1}\n  - " + GetParam().entry + "\n");
+  const Outcome outcome =
+      run(fmt::format("process '{}' --out '{}'", file.string(), (folder.path() / "out").string()), folder.path());
+  EXPECT_EQ(outcome.status, 2) << outcome.error;
+  const auto line = std::count(good.begin(), good.end(), '\n') + 3;
+  EXPECT_NE(outcome.error.find(fmt::format("spoiled_effects.yaml:{}:", line)), std::string::npos) << outcome.error;
+  EXPECT_NE(outcome.error.find(GetParam().message), std::string::npos) << outcome.error;
+  EXPECT_FALSE(fs::exists(folder.path() / "out" / "summary.json"));
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Runs, SpoiledEffects,
+    testing::Values(
+        SpoiledEffect{"a name with a slip", "{name: gyro_scale_faktor, sensor: gyro, axis: z, value: 0.01}",
+                      "The nearest is 'gyro_scale_factor'"},
+        SpoiledEffect{"noise of the error model", "{name: flicker_noise, sensor: gyro, axis: z, value: 1e-5}",
+                      "'flicker_noise'"},
+        SpoiledEffect{"another sensor", "{name: gyro_scale_factor, sensor: accel, axis: z, value: 0.01}",
+                      "no gyro_scale_factor of accel"},
+        SpoiledEffect{"a sensor that no form is of", "{name: unknown, sensor: gnss, axis: x, relation: speed, value: 1}",
+                      "no unknown of gnss"},
+        SpoiledEffect{"no axis", "{name: gyro_scale_factor, sensor: gyro, value: 0.01}", "'axis' is missing"},
+        SpoiledEffect{"an axis of another effect", "{name: gyro_scale_factor, sensor: gyro, axis: zy, value: 0.01}",
+                      "x | y | z"},
+        SpoiledEffect{"an axis where there is one", "{name: gnss_time_offset, sensor: clock, axis: x, value: 0.01}", "axis"},
+        SpoiledEffect{"no size", "{name: gyro_scale_factor, sensor: gyro, axis: z}", "'value' is missing"},
+        SpoiledEffect{"a word for a size", "{name: gyro_scale_factor, sensor: gyro, axis: z, value: large}", "large"},
+        SpoiledEffect{"a relation that is none", "{name: unknown, sensor: gyro, axis: x, relation: omega_z*f_w, value: 0.02}",
+                      "omega_z*f_w"},
+        SpoiledEffect{"no relation", "{name: unknown, sensor: gyro, axis: x, value: 0.02}", "'relation' is missing"},
+        SpoiledEffect{"no frequency", "{name: harmonic_disturbance, sensor: accel, axis: y, phase_rad: 0, value: 0.05}",
+                      "'frequency_hz' is missing"},
+        SpoiledEffect{"a frequency of what has none",
+                      "{name: bias_step, sensor: accel, axis: y, frequency_hz: 1, value: 0.05, start_s: 208900}",
+                      "frequency_hz"}),
+    [](const testing::TestParamInfo<SpoiledEffect>& spoiled) { return fmt::format("n{}", spoiled.index); });
+
+}  // namespace
+}  // namespace coast::cli
