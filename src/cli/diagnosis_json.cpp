@@ -97,10 +97,11 @@ std::string explanation(const diagnose::NoiseFinding& f) {
 
 bool SimulationCheck::has(const diagnose::Finding& finding) const {
   constexpr double kEqual = 4.0;  // sd of the difference
+  const diagnose::Effect& effect = *finding.hypothesis.effect;
   return std::ranges::any_of(diagnosis.findings, [&](const diagnose::Finding& other) {
-    return other.hypothesis.effect->name == finding.hypothesis.effect->name &&
-           other.hypothesis.effect->site == finding.hypothesis.effect->site &&
-           other.hypothesis.axis == finding.hypothesis.axis &&
+    const diagnose::Effect& its = *other.hypothesis.effect;
+    return its.name == effect.name && its.site == effect.site && its.relation == effect.relation &&
+           other.hypothesis.axis_name() == finding.hypothesis.axis_name() &&
            std::abs(other.value - finding.value) < kEqual * std::hypot(other.sd, finding.sd);
   });
 }

@@ -122,10 +122,14 @@ diagnose::NamedEffect named_effect(const Node& item) {
     return static_cast<Eigen::Index>(item.at("axis").choice({names.begin(), names.end()}));
   };
   std::vector<std::string_view> names{"harmonic_disturbance", "unknown"};
-  for (const diagnose::Effect& effect : diagnose::catalogue()) names.push_back(effect.name);
+  const auto add = [&](const auto& effect) {
+    if (std::ranges::find(names, effect.name) == names.end()) names.push_back(effect.name);
+  };
+  for (const diagnose::Effect& effect : diagnose::catalogue())
+    if (!effect.needs_reference) add(effect);
   for (const diagnose::NoiseEffect& effect : diagnose::noise_catalogue())
-    if (effect.level) names.push_back(effect.name);
-  for (const diagnose::SampleEffect& effect : diagnose::sample_catalogue()) names.push_back(effect.name);
+    if (effect.level) add(effect);
+  for (const diagnose::SampleEffect& effect : diagnose::sample_catalogue()) add(effect);
   const std::string_view name = names[item.at("name").choice(names)];
   const std::string sensor = item.at("sensor").text();
   const auto is_meant = [&](const auto& e) { return e.name == name && diagnose::name(e.site) == sensor; };
@@ -168,7 +172,9 @@ void read_effects(const Node& root, RunConfig& run) {
   if (run.tight) throw effects->error("effects of a tightly coupled run", "positions: they are taken out of fixes");
   for (const Node& item : effects->items()) {
     diagnose::NamedEffect one = named_effect(item);
-    if (const auto from = item.find("start_s")) one.from_s = from->number();
+    const auto from = item.find("start_s");
+    if (from && one.effect == nullptr) throw from->error("an instant", "none: noise and converters are the same all the time");
+    if (from) one.from_s = from->number();
     if (const auto to = item.find("end_s")) one.to_s = to->number();
     run.effects.push_back(std::move(one));
   }

@@ -74,6 +74,7 @@ std::vector<NoiseFinding> findings_of(const estimate::NoiseFit& fit, double p_va
     if (deviation < kBeyondChance * fit.log_sd[i]) continue;
     findings.push_back({words->name, words->sensor, words->axis, words->called, words->unit, value, value * fit.log_sd[i],
                         fit.log_likelihood_after - fit.log_likelihood_before, p_value});
+    if (!words->is_factor) findings.back().time_s = fit.adjustment.correlated_gnss.time_s;
   }
   return findings;
 }

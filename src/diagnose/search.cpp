@@ -49,13 +49,13 @@ Search::Search(const MissionInput& input, const DiagnosisOptions& options, const
     : options_(options),
       progress_(progress),
       input_(input),
-      grade_(grade_of(input.setup.model)),
-      noise_is_asked_for_(input.setup.noise_fit.has_value()) {
+      grade_(grade_of(input.setup.model)) {
   input_.setup.filter.gate_probability = 0.0;  // what a gate refuses cannot be explained
+  if (input.setup.noise_fit) asked_for_ = *input.setup.noise_fit;
   input_.setup.noise_fit.reset();
   run_again();
   run_again();  // from a start that is loose
-  if (noise_is_asked_for_) fit_noise();
+  if (input.setup.noise_fit) fit_noise();
   result_.grade = grade_;
   result_.before = run_->fit();
   result_.innovations_before = run_->solution().forward.innovations;

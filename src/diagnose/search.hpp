@@ -23,7 +23,7 @@ class Search {
   [[nodiscard]] const MissionInput& modelled() const { return current_; }
   [[nodiscard]] const std::vector<Taken>& taken() const { return taken_; }
   [[nodiscard]] bool has_found_anything() const {
-    return !taken_.empty() || (noise_ && !noise_is_asked_for_) || !added_.empty() || !result_.noise.empty();
+    return !taken_.empty() || !noise_findings().empty() || !added_.empty() || !result_.noise.empty();
   }
   [[nodiscard]] double sd(std::size_t index) const { return result_.findings[index].sd; }
   /// Sine and cosine of an oscillation belong together.
@@ -83,6 +83,8 @@ class Search {
   bool follow(const Examination& e);
 
   // For people (search_result.cpp).
+  /// Of the noise that is stated, what the configuration does not want estimated anyway.
+  [[nodiscard]] std::vector<NoiseFinding> noise_findings() const;
   /// An effect that is taken back later by an equal jump the other way lasted until then: a wrong fix.
   void join_entries_with_exits();
   /// Sine and cosine become amplitude and phase.
@@ -93,7 +95,7 @@ class Search {
   const study::Progress& progress_;
   MissionInput input_;
   Grade grade_;
-  bool noise_is_asked_for_;  ///< the configuration wants it estimated: that it differs is no finding
+  estimate::NoiseFitChoice asked_for_{.gnss_scale = false, .correlated_gnss = false};  ///< noise that the run estimates
   MissionInput current_;
   std::unique_ptr<MissionRun> run_;
   std::vector<Taken> taken_;

@@ -28,7 +28,7 @@ PairedDifference paired_difference(const std::vector<double>& before, const std:
 
 Diagnosis Search::finish() {
   describe_what_was_not_found();
-  if (noise_ && !noise_is_asked_for_) std::ranges::copy(noise_->findings, std::back_inserter(result_.noise));
+  std::ranges::move(noise_findings(), std::back_inserter(result_.noise));
   std::ranges::move(random_effects_, std::back_inserter(result_.noise));
   for (std::size_t i = 0; i < result_.findings.size(); ++i) result_.findings[i].value = taken_[i].value;
   join_entries_with_exits();
@@ -39,6 +39,14 @@ Diagnosis Search::finish() {
   result_.innovations_after = run_->solution().forward.innovations;
   result_.modelled = std::move(current_);
   return std::move(result_);
+}
+
+std::vector<NoiseFinding> Search::noise_findings() const {
+  std::vector<NoiseFinding> findings;
+  if (!noise_) return findings;
+  for (const NoiseFinding& f : noise_->findings)
+    if (f.sensor == "gnss" ? !asked_for_.gnss_scale : !asked_for_.imu_white_noise) findings.push_back(f);
+  return findings;
 }
 
 void Search::join_entries_with_exits() {

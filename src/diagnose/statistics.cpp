@@ -131,6 +131,7 @@ Spread spread_of(const std::vector<std::vector<Statistic>>& twins, std::size_t f
     squares += twins[i][figure].value * twins[i][figure].value;
     count += 1.0;
   }
+  if (count < 2.0) return {};  // one tells nothing of a spread
   const double mean = sum / count;
   return {mean, std::sqrt(std::max(0.0, (squares - count * mean * mean) / (count - 1.0)))};
 }
@@ -151,7 +152,7 @@ std::vector<Statistic> statistics_of(const MissionRun& run, const Examination& e
 
 std::vector<TwinStatistic> against(const std::vector<Statistic>& real, const std::vector<std::vector<Statistic>>& twins) {
   std::vector<TwinStatistic> result;
-  if (twins.size() < 3) return result;
+  if (twins.empty()) return result;
   std::vector<double> farthest(twins.size(), 0.0);
   for (std::size_t j = 0; j < real.size(); ++j)
     for (std::size_t i = 0; i < twins.size(); ++i)

@@ -25,8 +25,8 @@ TEST(Schemas, AreOfOneDraft) {
 }
 
 TEST(Schemas, OwnExamplesAreValid) {
-  for (const char* name : {"calibration", "calibration_run", "estimator_study", "estimator_study_result", "imu_error_model",
-                           "outage", "ppk", "ppk_result", "run", "scenario", "study", "summary"}) {
+  for (const char* name : {"calibration", "calibration_run", "diagnosis", "estimator_study", "estimator_study_result",
+                           "imu_error_model", "outage", "ppk", "ppk_result", "run", "scenario", "study", "summary"}) {
     const json examples = test::schema(name).at("examples");
     ASSERT_FALSE(examples.empty()) << name;
     for (const json& example : examples) test::expect_valid(name, example, "example");
@@ -99,6 +99,10 @@ TEST(Schemas, RefuseWhatTheProgramRefuses) {
   EXPECT_TRUE(refused("estimator_study", {{"truth", {{"processes", {{{"process", "white_noise"}, {"density", 0}}}}}}}));
   EXPECT_TRUE(refused("estimator_study_result", {{"estimators", json::array()}}));
   EXPECT_FALSE(refused("estimator_study_result", {{"more", 1}}));  // outputs may gain keys
+  EXPECT_FALSE(refused("diagnosis", {{"more", 1}}));               // outputs may gain keys
+  EXPECT_TRUE(refused("diagnosis", {{"effects", {{{"name", "unknown"}}}}}));
+  EXPECT_TRUE(refused("diagnosis", {{"grade", "toy"}}));
+  EXPECT_TRUE(refused("diagnosis", {{"verification", {{"held_out", nullptr}}}}));  // its log-likelihoods stay
   EXPECT_TRUE(refused("scenario", {{"trajectory", {{"kind", "rocket"}}}}));
   EXPECT_TRUE(refused("scenario", {{"schema", nullptr}}));
   EXPECT_FALSE(refused(

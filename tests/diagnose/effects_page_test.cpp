@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <fstream>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "coast/diagnose/effect.hpp"
@@ -18,9 +19,10 @@ namespace {
 enum PageColumn : std::size_t { kNameCell, kSensorCell, kAxesCell, kParameterCell, kUnitCell, kEquationCell, kPageColumns = 8 };
 using PageRow = std::vector<std::string>;
 
-std::string without_margin(const std::string& text, const char* margin) {
-  const std::size_t first = text.find_first_not_of(margin);
-  return first == std::string::npos ? "" : text.substr(first, text.find_last_not_of(margin) + 1 - first);
+std::string without_margin(std::string_view text, std::string_view margin) {
+  while (!text.empty() && margin.find(text.front()) != std::string_view::npos) text.remove_prefix(1);
+  while (!text.empty() && margin.find(text.back()) != std::string_view::npos) text.remove_suffix(1);
+  return std::string(text);
 }
 
 /// Cells of "| one | two |": spaces and backticks about them left out, "\|" as the character that it stands for.
@@ -76,7 +78,7 @@ TEST(EffectsPage, NamesTheAxesOfEveryEffect) {
   for (const diagnose::Effect& e : diagnose::catalogue()) {
     std::string axes;
     for (const std::string& axis : e.axes) axes += (axes.empty() ? "" : ", ") + axis;
-    if (axes.empty()) axes = "-";
+    if (axes.empty()) axes.push_back('-');
     if (e.axes == diagnose::nine_pairs()) axes = "all nine pairs";
     EXPECT_TRUE(std::ranges::any_of(page,
                                     [&](const PageRow& row) {
