@@ -1,4 +1,4 @@
-"""runs.py COAST CONCEAL OUT: `coast diagnose` on real recordings as they are, with a configuration that was falsified, and with an effect put
+"""runs.py COAST CONCEAL OUT [SHARD OF]: `coast diagnose` on real recordings as they are, with a configuration that was falsified, and with an effect put
 into the recording's own IMU data; what each finds goes to OUT/numbers.json. A run that is there already is not made again."""
 
 import json
@@ -69,7 +69,7 @@ def one(name, make, out):
         os.makedirs(folder, exist_ok=True)
         with open(f"{folder}/run.yaml", "w") as file:
             file.write(re.sub(r"\n(outages|reference|vehicle|output):[^\n]*(\n  [^\n]*)*", "", make(folder)))
-        subprocess.run([COAST, "diagnose", f"{folder}/run.yaml", "--out", f"{folder}/diagnosis", "--twins", "0", "--quiet"], check=True)
+        subprocess.run([COAST, "diagnose", f"{folder}/run.yaml", "--out", f"{folder}/diagnosis", "--twins", "0", "--threads", "1", "--quiet"], check=True)
     with open(kept) as file:
         d = json.load(file)
     effects = {f'{e["name"]} {e["sensor"]} {e.get("relation", e["axis"])}'.strip():
@@ -81,9 +81,13 @@ def one(name, make, out):
 
 
 COAST, CONCEAL, OUT = sys.argv[1:4]
+SHARD, OF = (int(a) for a in sys.argv[4:6]) if len(sys.argv) > 5 else (0, 1)
 numbers = {}
-for name, make in RUNS.items():
+for i, (name, make) in enumerate(RUNS.items()):
+    if i % OF != SHARD:
+        continue
     numbers[name] = one(name, make, OUT)
     print(name, list(numbers[name]["effects"]), flush=True)
-with open(f"{OUT}/numbers.json", "w") as file:
-    json.dump(numbers, file, indent=1)
+if OF == 1:
+    with open(f"{OUT}/numbers.json", "w") as file:
+        json.dump(numbers, file, indent=1)
