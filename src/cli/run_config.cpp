@@ -8,6 +8,7 @@
 #include "coast/ins/mounting.hpp"
 #include "coast/io/writers.hpp"
 #include "coast/io/yaml.hpp"
+#include "run_effects.hpp"
 
 namespace coast::cli {
 
@@ -113,71 +114,6 @@ int satellites_left(const Node& outage, const RunConfig& run) {
     throw node->error("a partial outage of a loosely coupled run", "gnss: {coupling: tight, ..}",
                       "Fixes need four satellites; only observations themselves help with fewer.");
   return static_cast<int>(left);
-}
-
-/// The catalogue's effect of a name and a sensor, one that a recording suggested, or a random one.
-diagnose::NamedEffect named_effect(const Node& item) {
-  const auto axis_of = [&](const std::vector<std::string>& names) -> Eigen::Index {
-    if (names.front().empty()) return 0;
-    return static_cast<Eigen::Index>(item.at("axis").choice({names.begin(), names.end()}));
-  };
-  std::vector<std::string_view> names{"harmonic_disturbance", "unknown"};
-  const auto add = [&](const auto& effect) {
-    if (std::ranges::find(names, effect.name) == names.end()) names.push_back(effect.name);
-  };
-  for (const diagnose::Effect& effect : diagnose::catalogue())
-    if (!effect.needs_reference) add(effect);
-  for (const diagnose::NoiseEffect& effect : diagnose::noise_catalogue())
-    if (effect.level) add(effect);
-  for (const diagnose::SampleEffect& effect : diagnose::sample_catalogue()) add(effect);
-  const std::string_view name = names[item.at("name").choice(names)];
-  const std::string sensor = item.at("sensor").text();
-  const auto is_meant = [&](const auto& e) { return e.name == name && diagnose::name(e.site) == sensor; };
-  diagnose::NamedEffect one;
-  one.value = item.at("value").number();
-  const auto& known = diagnose::catalogue();
-  const auto& random = diagnose::noise_catalogue();
-  const auto& of_samples = diagnose::sample_catalogue();
-  if (const auto effect = std::ranges::find_if(known, is_meant); effect != known.end()) {
-    one.effect = &*effect;
-    one.axis = axis_of(effect->axes);
-  } else if (const auto noise = std::ranges::find_if(random, is_meant); noise != random.end() && noise->level) {
-    one.noise = &*noise;
-    one.axis = axis_of(diagnose::three_axes());
-  } else if (const auto sample = std::ranges::find_if(of_samples, is_meant); sample != of_samples.end()) {
-    one.sample = &*sample;
-    one.axis = axis_of(diagnose::three_axes());
-  } else if ((name == "harmonic_disturbance" || name == "unknown") && (sensor == "gyro" || sensor == "accel")) {
-    const diagnose::Site site = sensor == "gyro" ? diagnose::Site::kGyro : diagnose::Site::kAccel;
-    const auto axis = static_cast<int>(axis_of(diagnose::three_axes()));
-    if (name == "unknown") {
-      std::vector<std::string_view> relations;
-      for (const diagnose::Relation& r : diagnose::relations()) relations.push_back(r.name);
-      one.suggested = diagnose::unknown_relation(site, axis, std::string(relations[item.at("relation").choice(relations)]));
-    } else {
-      one.suggested =
-          diagnose::harmonic_disturbance(site, axis, item.at("frequency_hz").number(), item.at("phase_rad").number());
-    }
-    one.effect = one.suggested.get();
-  } else {
-    throw item.at("sensor").error(fmt::format("no {} of {}", name, sensor), "the sensor that diagnosis.json names with it");
-  }
-  return one;
-}
-
-/// effects: [{name: gyro_g_sensitivity, sensor: gyro, axis: zy, value: 2e-6, start_s: .., end_s: ..}]
-void read_effects(const Node& root, RunConfig& run) {
-  const auto effects = root.find("effects");
-  if (!effects) return;
-  if (run.tight) throw effects->error("effects of a tightly coupled run", "positions: they are taken out of fixes");
-  for (const Node& item : effects->items()) {
-    diagnose::NamedEffect one = named_effect(item);
-    const auto from = item.find("start_s");
-    if (from && one.effect == nullptr) throw from->error("an instant", "none: noise and converters are the same all the time");
-    if (from) one.from_s = from->number();
-    if (const auto to = item.find("end_s")) one.to_s = to->number();
-    run.effects.push_back(std::move(one));
-  }
 }
 
 void read_outages(const Node& root, RunConfig& run) {
@@ -330,7 +266,10 @@ RunConfig read_run_config(const std::filesystem::path& file) {
     static_cast<void>(root.choice("start", {"auto"}, 0));
   if (const auto filter = root.find("filter")) read_filter(*filter, run);
   read_vehicle(root, run.setup);
-  read_effects(root, run);
+  if (const auto effects = root.find("effects")) {
+    if (run.tight) throw effects->error("effects of a tightly coupled run", "positions: they are taken out of fixes");
+    run.effects = read_effects(*effects);
+  }
   read_outages(root, run);
   read_smoother(root, run);
   read_output(root, run);
