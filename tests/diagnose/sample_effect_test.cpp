@@ -77,10 +77,8 @@ TEST(SampleEffects, WhatASaturatedSensorMissedIsMended) {
   input.imu.rate_hz = 100.0;
   const geo::GpsTime start = geo::GpsTime::from_week(2374, 1000.0);
   constexpr double kLimit = 0.8;
-  double truth = 0.0;
   for (int i = 0; i < 1000; ++i) {
     const double rate = std::sin(0.02 * i);
-    truth += 0.01 * rate;
     input.imu.samples.push_back(
         {start + 0.01 * (i + 1), 0.01, {0.0, 0.0, 0.01 * std::clamp(rate, -kLimit, kLimit)}, Eigen::Vector3d::Zero()});
   }
