@@ -95,6 +95,10 @@ std::string explanation(const diagnose::NoiseFinding& f) {
   return text + other_readings(f.alternatives, f.separating_manoeuvre);
 }
 
+bool is_accepted(const diagnose::Diagnosis& d) {
+  return (d.findings.empty() && d.noise.empty()) || d.after.log_likelihood_per_epoch > d.before.log_likelihood_per_epoch;
+}
+
 bool SimulationCheck::has(const diagnose::Finding& finding) const {
   constexpr double kEqual = 4.0;  // sd of the difference
   const diagnose::Effect& effect = *finding.hypothesis.effect;
@@ -147,6 +151,7 @@ Json verification_json(const diagnose::Diagnosis& d) {
   }
   if (!d.twins_after.empty()) j["twins"] = twins_json(d.twins_after);
   j["rejected"] = d.rejected;
+  j["accepted"] = is_accepted(d);
   return j;
 }
 
@@ -194,6 +199,8 @@ std::string diagnosis_text(const diagnose::Diagnosis& d, const std::optional<Sim
                         simulation && simulation->has(f) ? " The simulation has it too." : "");
   for (const diagnose::NoiseFinding& f : d.noise)
     text += fmt::format("{} {} {}: {}\n", f.name, f.sensor, f.axis, explanation(f));
+  if (!is_accepted(d))
+    text += "All together it makes the recording no likelier: not accepted. What is really missing is not known.\n";
   if (simulation)
     for (const diagnose::Finding& f : simulation->diagnosis.findings)
       if (!SimulationCheck{{}, d}.has(f))
