@@ -46,10 +46,7 @@ std::optional<std::pair<double, double>> at_onset(const Examination& e, const Ta
 }  // namespace
 
 Search::Search(const MissionInput& input, const DiagnosisOptions& options, const study::Progress& progress)
-    : options_(options),
-      progress_(progress),
-      input_(input),
-      grade_(grade_of(input.setup.model)) {
+    : options_(options), progress_(progress), input_(input), grade_(grade_of(input.setup.model)) {
   input_.setup.filter.gate_probability = 0.0;  // what a gate refuses cannot be explained
   if (input.setup.noise_fit) asked_for_ = *input.setup.noise_fit;
   input_.setup.noise_fit.reset();
