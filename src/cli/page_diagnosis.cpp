@@ -40,7 +40,7 @@ std::vector<report::Tile> diagnosis_tiles(const Diagnosis& d) {
   tiles[3].label = "Asked for";
   tiles[3].value = number(std::sqrt(d.threshold));
   tiles[3].unit = "sigma";
-  tiles[3].explanation = "The largest of all effects exceeds it by chance in one clean recording of twenty.";
+  tiles[3].explanation = "The largest of all effects exceeds it by chance in three clean recordings of a hundred.";
   tiles[3].section = "detectable";
   return tiles;
 }

@@ -3,8 +3,8 @@
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
-#include <atomic>
 #include <cmath>
+#include <mutex>
 #include <utility>
 
 #include "coast/diagnose/twin.hpp"
@@ -53,11 +53,13 @@ void hold_out(Search& search, Diagnosis& notes) {
 std::vector<std::vector<Statistic>> figures_of(std::size_t count, const std::function<MissionInput(std::size_t)>& recording,
                                                std::uint64_t seed, const study::Progress& progress) {
   std::vector<std::vector<Statistic>> figures(count);
-  std::atomic<std::size_t> done{0};
+  std::mutex telling;  // one at a time
+  std::size_t done = 0;
   tbb::parallel_for(std::size_t{0}, count, [&](std::size_t i) {
     figures[i] = statistics_of(recording(i), seed);
-    const std::size_t now = ++done;
-    if (progress && now < count) progress("running twins", static_cast<double>(now) / static_cast<double>(count));
+    const std::lock_guard lock(telling);
+    ++done;
+    if (progress) progress("running twins", static_cast<double>(done) / static_cast<double>(count));
   });
   return figures;
 }

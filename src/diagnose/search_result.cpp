@@ -70,17 +70,20 @@ void Search::join_entries_with_exits() {
 
 void Search::join_quadratures() {
   std::vector<Finding>& all = result_.findings;
-  for (std::size_t i = 0; i + 1 < all.size(); ++i) {
-    const Effect& effect = *all[i].hypothesis.effect;
-    if (effect.name != "harmonic_disturbance" || all[i + 1].hypothesis.effect != &effect) continue;
-    Finding& sine = all[i];
-    const Finding& cosine = all[i + 1];
-    const double phase = effect.fixed[1].value + std::atan2(cosine.value, sine.value);
-    const int axis = effect.axes.front().front() - 'x';
-    result_.suggested.push_back(harmonic_disturbance(effect.site, axis, effect.fixed[0].value, phase));
-    sine.hypothesis.effect = result_.suggested.back().get();
-    sine.value = std::hypot(sine.value, cosine.value);
-    sine.sd = std::max(sine.sd, cosine.sd);
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    const Hypothesis h = all[i].hypothesis;
+    if (h.effect->name != "harmonic_disturbance") continue;
+    const bool both = i + 1 < all.size() && all[i + 1].hypothesis.effect == h.effect;
+    // One of them may have been given up.
+    const double sine = h.axis == 0 ? all[i].value : 0.0;
+    const double cosine = both ? all[i + 1].value : all[i].value - sine;
+    const double phase = h.effect->fixed[1].value + std::atan2(cosine, sine);
+    result_.suggested.push_back(
+        harmonic_disturbance(h.effect->site, h.effect->axes.front().front() - 'x', h.effect->fixed[0].value, phase));
+    all[i].hypothesis = {result_.suggested.back().get(), 0, h.plausible};
+    all[i].value = std::hypot(sine, cosine);
+    if (!both) continue;
+    all[i].sd = std::max(all[i].sd, all[i + 1].sd);
     all.erase(all.begin() + static_cast<std::ptrdiff_t>(i) + 1);
   }
 }
@@ -89,6 +92,10 @@ void Search::describe_what_was_not_found() {
   const Hypotheses& hypotheses = run_->hypotheses();
   std::vector<bool> told(static_cast<std::size_t>(hypotheses.size()), false);
   for (const Taken& one : taken_) told[static_cast<std::size_t>(one.hypothesis)] = true;
+  // Of forms that a recording suggested and that were given up nothing is to be said.
+  for (Eigen::Index i = 0; i < hypotheses.size(); ++i)
+    if (std::ranges::find(suggested_, hypotheses[i].effect, &EffectPtr::get) != suggested_.end())
+      told[static_cast<std::size_t>(i)] = true;
   for (const Suspicion& s : suspicions_.all) {
     if (told[static_cast<std::size_t>(s.hypothesis)]) continue;
     told[static_cast<std::size_t>(s.hypothesis)] = true;

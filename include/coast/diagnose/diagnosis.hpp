@@ -105,7 +105,8 @@ struct Diagnosis {
   std::vector<Detectable> detectable_not_found;
   std::vector<NotObservable> not_observable;
   Grade grade = Grade::kIndustrial;
-  double threshold = 0.0;  ///< of the likelihood ratio, 5 % of clean recordings exceed it
+  double threshold =
+      0.0;  ///< of the likelihood ratio: the catalogue's share of false alarms, 3 % of clean recordings, exceeds it
   Fit before;
   Fit after;
   PairedDifference outage_change;
