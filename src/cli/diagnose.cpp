@@ -69,7 +69,9 @@ void diagnose(const std::filesystem::path& run_yaml, const DiagnoseOptions& choi
   std::optional<SimulationCheck> simulation;
   if (!simulations.empty())
     simulation = SimulationCheck{choice.simulation.string(), diagnose::diagnose(simulations.front(), {.twins = 0}, progress)};
-  const diagnose::Diagnosis diagnosis = diagnose::diagnose(input, {.twins = choice.twins}, progress, simulations);
+  diagnose::DiagnosisOptions search{.twins = choice.twins};
+  if (const std::optional<double> shift = recordings.time_shift_s) search.time_offset_s = -*shift;
+  const diagnose::Diagnosis diagnosis = diagnose::diagnose(input, search, progress, simulations);
   line.clear();
   const std::filesystem::path error_model = std::filesystem::absolute(out / "error_model.diagnosed.yaml");
   const std::string diagnosed = diagnosed_yaml(config.root.resolved_yaml(), diagnosis, error_model.string());

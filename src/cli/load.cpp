@@ -67,6 +67,7 @@ Recordings load(const RunConfig& config, const std::function<void(double)>& ppk_
   io::Inspection inspection = io::inspect(recordings.imu, recordings.gnss);
   std::ranges::move(inspection.sentences, std::back_inserter(recordings.inspection));
   recordings.inspection_events = std::move(inspection.events);
+  recordings.time_shift_s = inspection.time_shift_s;
   check_leap_seconds(config.imu.time, recordings.imu.source, recordings.imu.samples.back().t, recordings.inspection_events);
   check_leap_seconds(config.gnss.time, recordings.gnss.source, recordings.gnss.fixes.back().t, recordings.inspection_events);
   if (config.reference) recordings.reference = io::read_reference(*config.reference, recordings.imu.samples.front().t);

@@ -20,6 +20,7 @@ struct Recordings {
   std::optional<record::Trajectory> reference;
   std::shared_ptr<const estimate::CarrierObservations> carrier;  ///< for tight coupling
   std::vector<std::string> inspection;                           ///< what was understood, sentence by sentence
+  std::optional<double> time_shift_s;                            ///< of GNSS to IMU, where turns match best
   record::Events inspection_events;
 };
 

@@ -17,9 +17,20 @@ namespace coast::diagnose {
 
 namespace {
 
-void search_to_the_end(Search& search) {
-  constexpr int kMostSteps = 20;
-  for (int i = 0; i < kMostSteps && search.step();) ++i;
+/// A search, and what was given up on the way.
+struct Searched {
+  std::unique_ptr<Search> search;
+  std::vector<std::string> rejected = {};
+  std::optional<HeldOut> held_out = {};
+};
+
+void step_to_the_end(Search& search) {
+  constexpr int kMostSteps = 30;
+  constexpr int kMostReviews = 2;
+  for (int review = 0; review <= kMostReviews; ++review) {
+    for (int i = 0; i < kMostSteps && search.step();) ++i;
+    if (review == kMostReviews || !search.review()) return;
+  }
 }
 
 /// What was taken for a share of another effect, and is nothing now that this one is known better.
@@ -29,23 +40,38 @@ void forget_what_vanished(Search& search) {
     if (std::abs(search.taken()[i].value) < kNothing * search.sd(i) && !search.is_part_of_a_line(i)) search.give_up(i);
 }
 
-/// What explains nothing on held-out blocks is given up, the worst first.
-void hold_out(Search& search, Diagnosis& notes) {
+/// What explains nothing on held-out blocks is given up, the worst first. @return  whether something was
+bool hold_out(Searched& searched) {
+  Search& search = *searched.search;
+  bool gave_up = false;
   while (!search.taken().empty()) {
     const Verification verification = verify(search);
-    notes.held_out = verification.all;
+    searched.held_out = verification.all;
     const std::vector<Verification::Effect>& effects = verification.effects;
     if (std::ranges::all_of(effects, &Verification::Effect::holds)) {
-      for (std::size_t i = 0; i < effects.size(); ++i) search.set_held_out(i, effects[i].gain);
-      return;
+      for (std::size_t i = 0; i < effects.size(); ++i)
+        if (!effects[i].begins) search.set_held_out(i, effects[i].gain);
+      return gave_up;
     }
     const auto worst = std::ranges::min_element(
         effects, [](const auto& a, const auto& b) { return std::pair(a.holds(), a.gain) < std::pair(b.holds(), b.gain); });
     const auto index = static_cast<std::size_t>(worst - effects.begin());
     const Hypothesis& h = search.run().hypotheses()[search.taken()[index].hypothesis];
-    notes.rejected.push_back(std::string(h.effect->name) + (h.axis_name().empty() ? "" : " " + h.axis_name()));
+    searched.rejected.push_back(std::string(h.effect->name) + (h.axis_name().empty() ? "" : " " + h.axis_name()));
     search.give_up(index);
-    notes.held_out.reset();
+    gave_up = true;
+    searched.held_out.reset();
+  }
+  return gave_up;
+}
+
+/// What is given up leaves something unexplained, which may be something else.
+void search_to_the_end(Searched& searched) {
+  constexpr int kMostRounds = 4;
+  for (int round = 0; round < kMostRounds; ++round) {
+    step_to_the_end(*searched.search);
+    forget_what_vanished(*searched.search);
+    if (!hold_out(searched)) return;
   }
 }
 
@@ -68,15 +94,12 @@ std::vector<std::vector<Statistic>> figures_of(std::size_t count, const std::fun
 
 Diagnosis diagnose(const MissionInput& input, const DiagnosisOptions& options, const study::Progress& progress,
                    const std::vector<MissionInput>& simulations) {
-  Search search(input, options, progress);
+  const auto begin = [&](Order order) { return Searched{std::make_unique<Search>(input, options, order, progress)}; };
   const auto twins = static_cast<std::size_t>(std::max(0, options.twins));
-  Diagnosis notes;
-  const auto compared = [&](const std::vector<MissionInput>& given) {
-    const MissionInput& model = search.modelled();
-    const std::vector<record::NavState>& path = search.run().path();
+  const auto compared = [&](const Search& search, const std::vector<MissionInput>& given) {
     const auto recording = [&](std::size_t i) {
       if (!given.empty()) return given[i];
-      MissionInput one = twin(path, model, simulate::stream_seed(options.seed, {3, i}));
+      MissionInput one = twin(search.run().path(), search.modelled(), simulate::stream_seed(options.seed, {3, i}));
       one.setup.start = input.setup.start;  // found as that of the recording was
       one.setup.start_sensor_errors = input.setup.start_sensor_errors;
       return one;
@@ -84,16 +107,24 @@ Diagnosis diagnose(const MissionInput& input, const DiagnosisOptions& options, c
     return against(statistics_of(search.run(), search.examined()),
                    figures_of(given.empty() ? twins : given.size(), recording, options.seed, progress));
   };
-  if (twins > 0 || !simulations.empty()) notes.twins = compared(simulations);
-  search_to_the_end(search);
-  forget_what_vanished(search);
-  hold_out(search, notes);
-  if (twins > 0 && search.has_found_anything()) notes.twins_after = compared({});
-  Diagnosis result = search.finish();
-  result.twins = std::move(notes.twins);
-  result.twins_after = std::move(notes.twins_after);
-  result.held_out = notes.held_out;
-  result.rejected = std::move(notes.rejected);
+  Searched best = begin(Order::kNoiseFirst);
+  std::vector<TwinStatistic> before, after;
+  if (twins > 0 || !simulations.empty()) before = compared(*best.search, simulations);
+  search_to_the_end(best);
+  std::size_t further_runs = 0;
+  if (best.search->has_taken_noise()) {
+    Searched other = begin(Order::kMeansFirst);
+    search_to_the_end(other);
+    if (other.search->evidence() > best.search->evidence()) std::swap(best, other);
+    further_runs = other.search->runs();
+  }
+  if (twins > 0 && best.search->has_found_anything()) after = compared(*best.search, {});
+  Diagnosis result = best.search->finish();
+  result.runs += further_runs;
+  result.twins = std::move(before);
+  result.twins_after = std::move(after);
+  result.held_out = best.held_out;
+  result.rejected = std::move(best.rejected);
   return result;
 }
 

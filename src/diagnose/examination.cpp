@@ -2,6 +2,7 @@
 
 #include <Eigen/Cholesky>
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "coast/noise/chi_square.hpp"
@@ -11,8 +12,10 @@ namespace coast::diagnose {
 
 namespace {
 
-// An effect of which less is known than three times what is plausible cannot be told from nothing there.
-constexpr double kBlind = 3.0;
+// What is plausible is known to an order of magnitude or two. An effect of which less than that is known is not seen at all.
+constexpr double kBlind = 30.0;
+
+constexpr double kEpisode = 10.0;  // s; onsets closer than this are hardly different hypotheses
 
 /// A disturbance within an interval is a bias that steps at its beginning and back at its end.
 class DisturbanceRecorder {
@@ -60,8 +63,11 @@ class DisturbanceRecorder {
 
 class Recorder {
  public:
-  Recorder(const Hypotheses& hypotheses, const ExaminationOptions& options, std::size_t intervals, Examination& into)
-      : hypotheses_(hypotheses), into_(into), disturbances_(hypotheses, options, intervals, into.disturbances) {
+  Recorder(const Hypotheses& hypotheses, const ExaminationOptions& options, const estimate::KnotStore& knots, Examination& into)
+      : hypotheses_(hypotheses),
+        into_(into),
+        disturbances_(hypotheses, options, knots.size() > 0 ? knots.size() - 1 : 0, into.disturbances) {
+    if (knots.size() > 0) earliest_ = knots.at(0).post.nav.t + kEpisode;
     for (Eigen::Index i = 0; i < hypotheses.size(); ++i)
       if (hypotheses[i].begins_at_some_time()) into.tracks.push_back({i, {}, {}, {}, Eigen::VectorXd::Zero(options.draws)});
   }
@@ -74,7 +80,7 @@ class Recorder {
       const Eigen::Index i = track.hypothesis;
       const double information = e.N_effects(i, i);
       const double plausible = kBlind * hypotheses_[i].plausible;
-      if (information * plausible * plausible < 1.0) continue;
+      if (e.t < earliest_ || information * plausible * plausible < 1.0) continue;
       track.t.push_back(e.t);
       track.score.push_back(-e.r_effects(i));
       track.information.push_back(information);
@@ -93,13 +99,8 @@ class Recorder {
   const Hypotheses& hypotheses_;
   Examination& into_;
   DisturbanceRecorder disturbances_;
+  geo::GpsTime earliest_;  ///< of an onset: what begins before has been there from the start
 };
-
-/// log of the ratio of the likelihoods of c ~ N(0, plausible^2) and c = 0.
-double log_bayes_factor(double score, double information, double plausible) {
-  const double prior = 1.0 / (plausible * plausible);
-  return 0.5 * (score * score / (information + prior) - std::log1p(information / prior));
-}
 
 /// Scores and information of hypotheses that last the mission, those taken estimated beside them.
 class Conditional {
@@ -143,24 +144,25 @@ bool is_seen(const Hypothesis& h, double left, double all) {
 }
 
 Suspicion best_of(const Examination::Track& track, const Hypothesis& h) {
-  constexpr double kEpisode = 10.0;  // s; onsets closer than this are hardly different hypotheses
   std::size_t best = 0;
   const auto ratio = [&](std::size_t k) { return track.score[k] * track.score[k] / track.information[k]; };
   for (std::size_t k = 1; k < track.t.size(); ++k)
     if (ratio(k) > ratio(best)) best = k;
-  // The instants whose likelihood ratio is less than the 95 % point of chi-square(1) below the largest.
-  constexpr double kDrop = 3.84;
-  std::size_t first = best;
-  std::size_t last = best;
-  while (first > 0 && ratio(first - 1) > ratio(best) - kDrop) --first;
-  while (last + 1 < track.t.size() && ratio(last + 1) > ratio(best) - kDrop) ++last;
+  // All instants whose likelihood ratio is less below the largest than that of a change point is by chance: 95 % of
+  // (1 - exp(-x/2))^2, the larger of two random walks downhill (Hansen 2000, Econometrica 68, eq. 9), not chi-square.
+  constexpr double kDrop = 7.35;
+  std::size_t first = 0;
+  std::size_t last = track.t.size() - 1;
+  while (first < best && ratio(first) <= ratio(best) - kDrop) ++first;
+  while (last > best && ratio(last) <= ratio(best) - kDrop) --last;
   // The interval reaches to the neighbours that are excluded: between two knots nothing tells.
   const geo::GpsTime before = track.t[first > 0 ? first - 1 : 0];
   const geo::GpsTime behind = track.t[std::min(last + 1, track.t.size() - 1)];
+  const double reach = std::max(track.t[best] - before, behind - track.t[best]);
   const double places = std::max(1.0, (track.t.back() - track.t.front()) / kEpisode);
   return {.hypothesis = track.hypothesis,
           .from = track.t[best],
-          .from_sd_s = (behind - before) / (2.0 * 1.96),
+          .from_sd_s = reach / 1.96,
           .estimate = track.score[best] / track.information[best],
           .sd = 1.0 / std::sqrt(track.information[best]),
           .likelihood_ratio = ratio(best),
@@ -173,7 +175,7 @@ Examination examine(const estimate::Mission& mission, const estimate::StateLayou
                     const Hypotheses& hypotheses, const ExaminationOptions& options,
                     const std::function<void(double)>& progress) {
   Examination result;
-  Recorder recorder(hypotheses, options, knots.size() > 0 ? knots.size() - 1 : 0, result);
+  Recorder recorder(hypotheses, options, knots, result);
   simulate::Normal normal(simulate::stream_seed(options.seed, {1}));
   estimate::EffectPassOptions pass;
   pass.draws = options.draws;
@@ -202,6 +204,11 @@ double LargestByChance::quantile(double probability) const {
   return noise::chi2_upper_quantile(1.0, -std::expm1(std::log1p(-probability) / count));
 }
 
+void Suspicions::judge(const LargestByChance& by_chance) {
+  chance = by_chance;
+  for (Suspicion& s : all) s.p_value = chance.p_value(s.likelihood_ratio);
+}
+
 Suspicions suspicions(const Examination& examination, const Hypotheses& hypotheses, const std::vector<Eigen::Index>& taken) {
   Suspicions result;
   const Conditional conditional(examination, taken);
@@ -226,12 +233,33 @@ Suspicions suspicions(const Examination& examination, const Hypotheses& hypothes
     largest = largest.cwiseMax(track.null_largest);
     result.all.push_back(best_of(track, hypotheses[track.hypothesis]));
   }
-  if (!result.all.empty()) result.chance = LargestByChance::of({largest.begin(), largest.end()});
-  for (Suspicion& s : result.all) s.p_value = result.chance.p_value(s.likelihood_ratio);
+  result.judge(LargestByChance::of({largest.begin(), largest.end()}));
   const Eigen::VectorXd scale = examination.information.diagonal().unaryExpr(
       [](double information) { return information > 0.0 ? 1.0 / std::sqrt(information) : 0.0; });
   result.correlation = scale.asDiagonal() * examination.information * scale.asDiagonal();
   return result;
+}
+
+// A Cauchy distribution is a mixture of normal ones with sd = plausible/|n|, n standard normal, and so is the ratio.
+double log_bayes_factor(double score, double information, double plausible) {
+  constexpr int kParts = 48;
+  constexpr double kFrom = -11.0;  // ln |n|
+  constexpr double kTo = 1.4;
+  constexpr double kStep = (kTo - kFrom) / kParts;
+  std::array<double, kParts> parts{};
+  double weights = 0.0;
+  for (int i = 0; i < kParts; ++i) {
+    const double n = std::exp(kFrom + (i + 0.5) * kStep);
+    const double prior = n * n / (plausible * plausible);
+    const double log_weight = std::log(n) - 0.5 * n * n;
+    weights += std::exp(log_weight);
+    parts[static_cast<std::size_t>(i)] =
+        log_weight + 0.5 * (score * score / (information + prior) - std::log1p(information / prior));
+  }
+  const double largest = *std::ranges::max_element(parts);
+  double sum = 0.0;
+  for (const double part : parts) sum += std::exp(part - largest);
+  return largest + std::log(sum / weights);
 }
 
 // Noncentral chi-square with one degree of freedom: sqrt of it is |N(delta, 1)|; the other tail adds nothing.

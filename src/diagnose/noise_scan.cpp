@@ -117,8 +117,8 @@ Eigen::VectorXd sensor_states_in(const estimate::StateLayout& to, const estimate
   states.head(estimate::kNav) = x.head(estimate::kNav);
   auto next = from.sensors().begin();
   for (const estimate::StateLayout::SensorBlock& block : to.sensors()) {
-    if (next == from.sensors().end() || next->process != block.process || next->axis != block.axis ||
-        next->sensor != block.sensor)
+    if (next == from.sensors().end() || next->process->name() != block.process->name() || next->size != block.size ||
+        next->axis != block.axis || next->sensor != block.sensor)
       continue;
     states.segment(block.offset, block.size) = x.segment(next->offset, next->size);
     ++next;

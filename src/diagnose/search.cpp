@@ -10,6 +10,7 @@ namespace coast::diagnose {
 namespace {
 
 constexpr double kSettled = 0.1;    // sd that a coefficient may still move
+constexpr double kNear = 1.0;       // likewise, from where on what is left may be something else
 constexpr double kStable = 0.5;     // of a relation, from where it is believed
 constexpr double kUncertain = 0.1;  // of a likelihood ratio whose variance is that of some hundred draws
 
@@ -45,14 +46,14 @@ std::optional<std::pair<double, double>> at_onset(const Examination& e, const Ta
 
 }  // namespace
 
-Search::Search(const MissionInput& input, const DiagnosisOptions& options, const study::Progress& progress)
-    : options_(options), progress_(progress), input_(input), grade_(grade_of(input.setup.model)) {
+Search::Search(const MissionInput& input, const DiagnosisOptions& options, Order order, const study::Progress& progress)
+    : options_(options), order_(order), progress_(progress), input_(input), grade_(grade_of(input.setup.model)) {
   input_.setup.filter.gate_probability = 0.0;  // what a gate refuses cannot be explained
-  if (input.setup.noise_fit) asked_for_ = *input.setup.noise_fit;
+  asked_for_ = input.setup.noise_fit;
   input_.setup.noise_fit.reset();
   run_again();
   run_again();  // from a start that is loose
-  if (input.setup.noise_fit) fit_noise();
+  if (asked_for_) fit_noise();
   result_.grade = grade_;
   result_.before = run_->fit();
   result_.innovations_before = run_->solution().forward.innovations;
@@ -61,31 +62,40 @@ Search::Search(const MissionInput& input, const DiagnosisOptions& options, const
 
 bool Search::step() {
   const Examination examination = examined();
-  const bool settled = follow(examination);
+  const double moved = follow(examination);
+  if (moved > kNear) {
+    run_again();
+    return true;
+  }
   suspicions_ = suspicions(examination, run_->hypotheses(), of_whole_mission());
   result_.threshold = suspicions_.chance.quantile(of_catalogue());
-  const Suspicion* best = result_.findings.size() < most() ? likeliest() : nullptr;
-  double mean_gain = 0.0;  // of the likeliest; what is taken weighs what is plausible too
-  if (best != nullptr)
-    for (const Suspicion& s : suspicions_.all)
-      if (!was_refused(s)) mean_gain = std::max(mean_gain, 0.5 * s.likelihood_ratio);
-  const std::optional<Proposal> form = result_.findings.size() < most() ? likeliest_form(examination) : std::nullopt;
+  if (take_time_offset()) return true;
+  const bool is_full = result_.findings.size() >= most();
+  candidates_ = is_full ? Candidates() : candidates();
+  const std::optional<Proposal> form = is_full ? std::nullopt : likeliest_form(examination);
   const double form_gain = form ? (0.5 + kUncertain) * form->likelihood_ratio - form->log_places : 0.0;
-  if (take_noise(examination, std::max(mean_gain, form_gain))) {
+  const bool means_first = order_ == Order::kMeansFirst && !candidates_.all.empty();
+  if (!means_first && take_noise(examination, form_gain)) {
     run_again();
     return true;
   }
-  if (form && form_gain > mean_gain) {
-    try_out(*form, mean_gain);
+  if (form && beats_candidates(form_gain)) {
+    try_out(*form);
     return true;
   }
-  if (best == nullptr && settled) return false;
-  if (best == nullptr) {
+  if (candidates_.all.empty() && moved < kSettled) return false;
+  if (candidates_.all.empty()) {
     run_again();
     return true;
   }
-  try_out(Suspicion(*best));
+  if (makes_likelier(winner())) fit_noise_again();
   return true;
+}
+
+double Search::evidence() const {
+  const double choices = std::log(suspicions_.chance.count);
+  const double parameters = noise_ ? static_cast<double>(noise_->fit.names.size()) : 0.0;
+  return run_->log_likelihood() - choices * static_cast<double>(taken_.size() + added_.size()) - parameters;
 }
 
 Examination Search::examined(const std::function<bool(geo::GpsTime)>& counts, Eigen::Index draws) const {
@@ -125,7 +135,9 @@ MissionInput Search::with_values(const std::vector<Taken>& taken) const {
 
 void Search::give_up(std::size_t index) {
   const auto at = static_cast<std::ptrdiff_t>(index);
-  refused_.push_back(taken_[index].hypothesis);
+  given_up_.push_back(taken_[index].hypothesis);
+  const auto form = std::ranges::find(suggested_, result_.findings[index].hypothesis.effect, &EffectPtr::get);
+  if (form != suggested_.end()) refused_forms_.push_back(*form);
   taken_.erase(taken_.begin() + at);
   result_.findings.erase(result_.findings.begin() + at);
   run_again();
@@ -182,36 +194,20 @@ Movement movement(const Examination& e, const std::vector<Taken>& taken) {
   return result;
 }
 
-bool Search::follow(const Examination& e) {
+double Search::follow(const Examination& e) {
   const Movement moved = movement(e, taken_);
-  bool settled = true;
+  const auto deviation = [&](std::size_t i) { return moved.sd[i] > 0.0 ? std::abs(moved.by[i]) / moved.sd[i] : 0.0; };
+  // What begins at some time is not estimated together with the others: where two look alike each would take all of what is
+  // left. So the one that is farthest off moves by itself, or all that last the mission.
+  std::optional<std::size_t> farthest;
   for (std::size_t i = 0; i < taken_.size(); ++i) {
-    if (!(moved.sd[i] > 0.0)) continue;
-    taken_[i].value += moved.by[i];
-    result_.findings[i].sd = moved.sd[i];
-    settled = settled && std::abs(moved.by[i]) < kSettled * moved.sd[i];
+    if (moved.sd[i] > 0.0) result_.findings[i].sd = moved.sd[i];
+    if (!farthest || deviation(i) > deviation(*farthest)) farthest = i;
   }
-  return settled;
-}
-
-void Search::try_out(const Suspicion& s) {
-  constexpr int kHalvings = 4;
-  const double before = run_->log_likelihood();
-  take(s);
-  std::unique_ptr<MissionRun> start = std::move(run_);
-  for (int i = 0; i <= kHalvings; ++i, taken_.back().value *= 0.5) {
-    run_from(*start);
-    const double gained = run_->log_likelihood() - before;
-    if (gained < 0.5 * result_.threshold) continue;
-    result_.findings.back().delta_log_likelihood = gained;
-    noise_tried_ = false;
-    fit_noise_again();
-    return;
-  }
-  taken_.pop_back();
-  result_.findings.pop_back();
-  refused_.push_back(s.hypothesis);
-  run_from(*start);
+  if (!farthest) return 0.0;
+  for (std::size_t i = 0; i < taken_.size(); ++i)
+    if (i == *farthest || (!taken_[i].from && !taken_[*farthest].from)) taken_[i].value += moved.by[i];
+  return deviation(*farthest);
 }
 
 std::optional<Proposal> Search::likeliest_form(const Examination& examination) const {
@@ -259,7 +255,7 @@ EffectPtr Search::refined(const EffectPtr& line) {
                               line->fixed[1].value);
 }
 
-void Search::try_out(const Proposal& form, double to_beat) {
+void Search::try_out(const Proposal& form) {
   const double before = run_->log_likelihood();
   const std::vector<Taken> taken = taken_;
   const std::vector<Finding> findings = result_.findings;
@@ -276,7 +272,8 @@ void Search::try_out(const Proposal& form, double to_beat) {
   static_cast<void>(follow(examined()));
   run_again();
   const double gained = run_->log_likelihood() - before;
-  if (gained - form.log_places > std::max(to_beat, -std::log(kFormFalseAlarm))) {
+  if (gained - form.log_places > std::max(candidates_.gain, -std::log(kFormFalseAlarm))) {
+    refused_.clear();
     fit_noise_again();
     Finding& found = result_.findings[taken.size()];
     found.delta_log_likelihood = gained;
@@ -288,47 +285,6 @@ void Search::try_out(const Proposal& form, double to_beat) {
   taken_ = taken;
   result_.findings = findings;
   run_from(*start);
-}
-
-bool Search::was_refused(const Suspicion& s) const {
-  return std::ranges::find(refused_, s.hypothesis) != refused_.end();
-}
-
-const Suspicion* Search::likeliest() const {
-  const Suspicion* best = nullptr;
-  for (const Suspicion& s : suspicions_.all)
-    if (!was_refused(s) && s.p_value < of_catalogue() && (best == nullptr || s.log_bayes > best->log_bayes)) best = &s;
-  return best;
-}
-
-Alternative Search::alternative(const Suspicion& s, double log_odds) const {
-  const Hypothesis& h = run_->hypotheses()[s.hypothesis];
-  return {std::string(h.effect->name), std::string(name(h.effect->site)), h.axis_name(), log_odds};
-}
-
-void Search::take(const Suspicion& s) {
-  taken_.push_back({s.hypothesis, s.from, {}, s.estimate});
-  const Hypotheses& hypotheses = run_->hypotheses();
-  Finding finding{.hypothesis = hypotheses[s.hypothesis],
-                  .from = s.from,
-                  .to = {},
-                  .from_sd_s = s.from_sd_s,
-                  .value = s.estimate,
-                  .sd = s.sd,
-                  .p_value = s.p_value,
-                  .held_out_gain = {},
-                  .alternatives = {},
-                  .stability = {}};
-  for (const Suspicion& other : suspicions_.all)
-    if (other.hypothesis != s.hypothesis &&
-        (s.log_bayes - other.log_bayes < kLogOdds || s.likelihood_ratio - other.likelihood_ratio < 2.0 * kLogOdds))
-      finding.alternatives.push_back(
-          alternative(other, std::max(s.log_bayes - other.log_bayes, 0.5 * (s.likelihood_ratio - other.likelihood_ratio))));
-  for (const FittedEffect& fit : beaten_)
-    if (0.5 * s.likelihood_ratio - fit.gain < kLogOdds)
-      finding.alternatives.push_back(diagnose::alternative(fit, 0.5 * s.likelihood_ratio));
-  std::ranges::sort(finding.alternatives, {}, &Alternative::log_odds);
-  result_.findings.push_back(std::move(finding));
 }
 
 }  // namespace coast::diagnose

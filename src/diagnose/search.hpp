@@ -10,10 +10,28 @@
 
 namespace coast::diagnose {
 
+/// A mean effect of the catalogue that chance does not explain.
+struct Candidate {
+  Suspicion suspicion;
+  std::optional<double> by_runs;  ///< gain in log-likelihood, where runs were made
+  /// With the gain of runs for that of the scores, and the price of what is implausible as it is.
+  [[nodiscard]] double log_bayes() const {
+    return suspicion.log_bayes + (by_runs ? *by_runs - 0.5 * suspicion.likelihood_ratio : 0.0);
+  }
+};
+struct Candidates {
+  std::vector<Candidate> all;  ///< the likeliest first
+  double gain = 0.0;           ///< largest in log-likelihood, as far as known
+};
+
+/// What is taken where both explain the same. A random effect stands for two mean effects as well as for one, and beats each by
+/// itself; mean effects by the dozen stand for noise that lasts. Which it is shows in the end (Search::evidence).
+enum class Order { kNoiseFirst, kMeansFirst };
+
 /// The mission with what has been taken so far, and the search's next step.
 class Search {
  public:
-  Search(const MissionInput& input, const DiagnosisOptions& options, const study::Progress& progress);
+  Search(const MissionInput& input, const DiagnosisOptions& options, Order order, const study::Progress& progress);
 
   /// @return  whether something was done that may show more
   bool step();
@@ -25,10 +43,18 @@ class Search {
   [[nodiscard]] bool has_found_anything() const {
     return !taken_.empty() || !noise_findings().empty() || !added_.empty() || !result_.noise.empty();
   }
+  [[nodiscard]] bool has_taken_noise() const { return noise_.has_value() || !added_.empty(); }
+  [[nodiscard]] std::size_t runs() const { return result_.runs; }
+  /// Log-likelihood less what choosing among so many costs.
+  [[nodiscard]] double evidence() const;
   [[nodiscard]] double sd(std::size_t index) const { return result_.findings[index].sd; }
   /// Sine and cosine of an oscillation belong together.
   [[nodiscard]] bool is_part_of_a_line(std::size_t index) const {
     return result_.findings[index].hypothesis.effect->axes.size() == 2;
+  }
+  /// A line or a relation that no catalogue has.
+  [[nodiscard]] bool is_suggested(const Effect& effect) const {
+    return std::ranges::find(suggested_, &effect, &EffectPtr::get) != suggested_.end();
   }
   /// The mission with other values of what was taken, noise and start as they are.
   [[nodiscard]] MissionInput with_values(const std::vector<Taken>& taken) const;
@@ -36,6 +62,9 @@ class Search {
   [[nodiscard]] Examination examined(const std::function<bool(geo::GpsTime)>& counts = {}, Eigen::Index draws = 400) const;
   /// Takes an effect back, and runs again.
   void give_up(std::size_t index);
+  /// Every effect of the catalogue is put to the test once more beside all the others: is it needed, and is it this one?
+  /// @return  whether another took its place, or none
+  bool review();
   void set_held_out(std::size_t index, double gain) { result_.findings[index].held_out_gain = gain; }
 
  private:
@@ -51,36 +80,50 @@ class Search {
   /// What converters do is seen without a filter; whether it matters is not.
   void look_at_samples();
   /// Noise first where it explains more than the likeliest mean effect: a fit of what is stated, or a random effect beside it.
-  bool take_noise(const Examination& examination, double mean_gain);
+  /// @param form_gain  of a line or a relation
+  bool take_noise(const Examination& examination, double form_gain);
   /// Of what is stated, from the last fit on; none where chance explains the difference.
   void fit_noise();
   /// What was taken since may be what it stood for.
   void fit_noise_again();
   /// The likeliest random effect of an axis, and on the same axis the others, whose gains are set against each other.
+  /// @param to_beat  gain of another way to model noise
   bool take_random_effect(const Examination& examination, double to_beat);
   [[nodiscard]] bool was_refused(const AddedNoise& noise) const;
   /// @param fits  the first is taken
   void describe(const std::vector<FittedEffect>& fits, double p_value);
 
   // Mean effects: of the catalogue, and such that the recording suggests.
-  [[nodiscard]] const Suspicion* likeliest() const;
+  /// The likeliest mean effects of the catalogue that chance does not explain.
+  [[nodiscard]] Candidates candidates() const;
+  /// What runs without the effect gain, the better of its first estimate and the next: scores are linear about nothing there,
+  /// and of a large effect tell tens of percent too little or too much.
+  [[nodiscard]] double gain_by_runs(const Suspicion& s);
+  void run_candidates();
+  /// Whether something else explains more than every candidate, by runs of these where their scores leave it open.
+  [[nodiscard]] bool beats_candidates(double gain);
+  /// Begins at the time offset that turns tell, where that is likelier. @return  whether it was taken
+  bool take_time_offset();
+  /// The likeliest candidate, by runs where there are several.
+  [[nodiscard]] Suspicion winner();
   /// A line or a relation that no catalogue has, where chance does not explain it.
   [[nodiscard]] std::optional<Proposal> likeliest_form(const Examination& examination) const;
   [[nodiscard]] bool was_refused(const Suspicion& s) const;
   [[nodiscard]] bool was_refused(const Proposal& form) const;
   /// Takes an effect and runs without it. Where the mission is not linear over the effect's size the first estimate is too
-  /// large: it is halved until the likelihood rises. One that never does so is refused for good.
-  void try_out(const Suspicion& s);
-  /// Its coefficients are found together with those that are taken already. Refused for good where it does not explain more
-  /// than the likeliest effect that has a name.
-  void try_out(const Proposal& form, double to_beat);
+  /// large: it is halved until the likelihood rises. One that never does so is refused until another was taken.
+  /// @return  whether it was taken
+  bool makes_likelier(const Suspicion& s);
+  /// Its coefficients are found together with those that are taken already. Refused where it does not explain more than the
+  /// likeliest effect that has a name.
+  void try_out(const Proposal& form);
   /// The likeliest frequency near that of a line, which the periodogram knows to a fraction of its width.
   [[nodiscard]] EffectPtr refined(const EffectPtr& line);
   void take(const Suspicion& s);
   [[nodiscard]] Alternative alternative(const Suspicion& s, double log_odds) const;
   [[nodiscard]] std::vector<Eigen::Index> of_whole_mission() const;
-  /// Coefficients taken follow what the run without them still shows. @return whether they rest
-  bool follow(const Examination& e);
+  /// Coefficients taken follow what the run without them still shows. @return  by how many sd the farthest moved
+  double follow(const Examination& e);
 
   // For people (search_result.cpp).
   /// Of the noise that is stated, what the configuration does not want estimated anyway.
@@ -92,23 +135,26 @@ class Search {
   void describe_what_was_not_found();
 
   DiagnosisOptions options_;
+  Order order_;
   const study::Progress& progress_;
   MissionInput input_;
   Grade grade_;
-  estimate::NoiseFitChoice asked_for_{.gnss_scale = false, .correlated_gnss = false};  ///< noise that the run estimates
+  std::optional<estimate::NoiseFitChoice> asked_for_;  ///< noise that the run estimates
   MissionInput current_;
   std::unique_ptr<MissionRun> run_;
   std::vector<Taken> taken_;
-  std::vector<Eigen::Index> refused_;
+  std::vector<Eigen::Index> refused_;   ///< until another is taken
+  std::vector<Eigen::Index> given_up_;  ///< for good
   Suspicions suspicions_;
+  Candidates candidates_;  ///< that this step chooses among
   std::optional<FittedNoise> noise_;
   std::optional<estimate::NoiseFit> last_fit_;
   bool noise_tried_ = false;
   std::vector<EffectPtr> suggested_;
-  std::vector<EffectPtr> refused_forms_;
+  std::vector<EffectPtr> refused_forms_;  ///< for good
   std::vector<AddedNoise> added_;
   std::vector<AddedNoise> refused_noise_;
-  std::vector<FittedEffect> beaten_;  ///< random effects that explain less than the mean effect that is likeliest
+  std::vector<FittedEffect> beaten_;  ///< random effects that explain less than a mean effect does
   std::vector<NoiseFinding> random_effects_;
   Diagnosis result_;
 };

@@ -55,7 +55,7 @@ void Search::look_at_samples() {
     }
 }
 
-bool Search::take_noise(const Examination& examination, double mean_gain) {
+bool Search::take_noise(const Examination& examination, double form_gain) {
   std::optional<FittedNoise> stated;
   if (!noise_ && !noise_tried_ && contradiction(run_->solution().forward.innovations) > kContradicted) {
     noise_tried_ = true;
@@ -63,8 +63,8 @@ bool Search::take_noise(const Examination& examination, double mean_gain) {
     if (stated) last_fit_ = stated->fit;
   }
   const double stated_gain = stated ? stated->gain() : 0.0;
-  if (added_.size() < kMostRandom && take_random_effect(examination, std::max(mean_gain, stated_gain))) return true;
-  if (!stated || stated_gain <= mean_gain) return false;
+  if (added_.size() < kMostRandom && take_random_effect(examination, std::max(form_gain, stated_gain))) return true;
+  if (!stated || stated_gain <= form_gain || !beats_candidates(stated_gain)) return false;
   noise_ = std::move(stated);
   return true;
 }
@@ -77,6 +77,7 @@ void Search::fit_noise() {
 }
 
 void Search::fit_noise_again() {
+  noise_tried_ = false;
   if (!noise_) return;
   noise_.reset();
   run_again();
@@ -92,21 +93,24 @@ bool Search::take_random_effect(const Examination& examination, double to_beat) 
         (first == nullptr || s.likelihood_ratio > first->likelihood_ratio))
       first = &s;
   if (first == nullptr) return false;
-  std::vector<FittedEffect> fits;
-  for (const NoiseEffect& effect : noise_catalogue())
-    if (const NoiseSuspicion* s = strongest(suspected, effect, first->noise))
-      fits.push_back(fitted_effect(s->noise, current_, run_->layout(), run_->log_likelihood()));
-  std::ranges::sort(fits, std::ranges::greater{}, &FittedEffect::gain);
-  const FittedEffect& best = fits.front();
-  const double p_value = suspected.chance.p_value(2.0 * std::max(0.0, best.gain));
+  const auto fitted = [&](const NoiseSuspicion& suspicion) {
+    return fitted_effect(suspicion.noise, current_, run_->layout(), run_->log_likelihood());
+  };
+  std::vector<FittedEffect> fits{fitted(*first)};
+  const double p_value = suspected.chance.p_value(2.0 * std::max(0.0, fits.front().gain));
+  const double gain = fits.front().gain - std::log(suspected.chance.count);
   // A wandering bias follows a ramp as well as a ramp does: it has to explain more by what choosing among its forms is worth.
-  if (p_value > kNoiseFalseAlarm || best.gain - std::log(suspected.chance.count) <= to_beat) {
+  if (p_value > kNoiseFalseAlarm || gain <= to_beat || !beats_candidates(gain)) {
     if (p_value > kNoiseFalseAlarm) refused_noise_.push_back(first->noise);
     beaten_ = std::move(fits);
     return false;
   }
+  for (const NoiseEffect& effect : noise_catalogue())
+    if (const NoiseSuspicion* s = strongest(suspected, effect, first->noise); s != nullptr && &effect != first->noise.effect)
+      fits.push_back(fitted(*s));
+  std::ranges::sort(fits, std::ranges::greater{}, &FittedEffect::gain);
   describe(fits, p_value);
-  added_.push_back(best.noise);
+  added_.push_back(fits.front().noise);
   return true;
 }
 

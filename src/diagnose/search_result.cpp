@@ -33,6 +33,7 @@ Diagnosis Search::finish() {
   for (std::size_t i = 0; i < result_.findings.size(); ++i) result_.findings[i].value = taken_[i].value;
   join_entries_with_exits();
   join_quadratures();
+  std::ranges::stable_sort(result_.findings, std::ranges::greater{}, &Finding::delta_log_likelihood);
   result_.suggested.insert(result_.suggested.end(), suggested_.begin(), suggested_.end());
   result_.after = run_->fit();
   result_.outage_change = paired_difference(result_.before.outages_m, result_.after.outages_m);
@@ -45,7 +46,7 @@ std::vector<NoiseFinding> Search::noise_findings() const {
   std::vector<NoiseFinding> findings;
   if (!noise_) return findings;
   for (const NoiseFinding& f : noise_->findings)
-    if (f.sensor == "gnss" ? !asked_for_.gnss_scale : !asked_for_.imu_white_noise) findings.push_back(f);
+    if (!asked_for_ || (f.sensor == "gnss" ? !asked_for_->gnss_scale : !asked_for_->imu_white_noise)) findings.push_back(f);
   return findings;
 }
 
@@ -94,8 +95,7 @@ void Search::describe_what_was_not_found() {
   for (const Taken& one : taken_) told[static_cast<std::size_t>(one.hypothesis)] = true;
   // Of forms that a recording suggested and that were given up nothing is to be said.
   for (Eigen::Index i = 0; i < hypotheses.size(); ++i)
-    if (std::ranges::find(suggested_, hypotheses[i].effect, &EffectPtr::get) != suggested_.end())
-      told[static_cast<std::size_t>(i)] = true;
+    if (is_suggested(*hypotheses[i].effect)) told[static_cast<std::size_t>(i)] = true;
   for (const Suspicion& s : suspicions_.all) {
     if (told[static_cast<std::size_t>(s.hypothesis)]) continue;
     told[static_cast<std::size_t>(s.hypothesis)] = true;

@@ -172,7 +172,7 @@ std::vector<TwinStatistic> against(const std::vector<Statistic>& real, const std
 std::vector<Statistic> statistics_of(const MissionInput& input, std::uint64_t seed) {
   DiagnosisOptions options;
   options.seed = seed;
-  const Search search(input, options, {});
+  const Search search(input, options, Order::kNoiseFirst, {});
   return statistics_of(search.run(), search.examined());
 }
 

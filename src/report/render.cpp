@@ -31,10 +31,10 @@ std::string escape_html(std::string_view text) {
 }
 
 // Inside <script> the text must not contain "</script" or "<!--"; in JSON '<' occurs within strings only.
-std::string escape_script(std::string_view json) {
+std::string escape_script(std::string_view text) {
   std::string out;
-  out.reserve(json.size() + json.size() / 64);
-  for (const char c : json) {
+  out.reserve(text.size() + text.size() / 64);
+  for (const char c : text) {
     if (c == '<') {
       out += "\\u003c";
     } else {

@@ -62,6 +62,33 @@ TEST(Diagnosis, ATimeOffsetIsFound) {
   EXPECT_NEAR(f->value, -0.03, 4.0 * f->sd);
 }
 
+// 0.3 s are beyond what is linear: lever arms and relations of signals explain some of it.
+TEST(Diagnosis, ATimeOffsetThatIsFarOffIsFoundFromWhatTurnsTell) {
+  MissionInput input = test::honest_mission(3);
+  input.setup.time_offset_s = 0.3;
+  const Diagnosis d = diagnose::diagnose(input, {.twins = 0, .time_offset_s = 0.02}, {});
+  const Finding* f = only(d, "gnss_time_offset", "");
+  ASSERT_NE(f, nullptr) << names(d);
+  EXPECT_NEAR(f->value, -0.3, 4.0 * f->sd);
+}
+
+// A wandering bias explains a ramp nearly as well as a ramp does, and takes its place where it comes first.
+TEST(Diagnosis, ARampAndALeverArmAreBothFound) {
+  MissionInput input = test::honest_mission(12);
+  constexpr double kSlope = 3e-6;  // rad/s^2: fifty times what is plausible of this grade
+  for (record::ImuSample& sample : input.imu.samples)
+    sample.dtheta.y() += kSlope * (sample.t - input.imu.samples.front().t) * sample.dt;
+  input.setup.lever_arm_b.x() += 0.1;
+  const Diagnosis d = diagnose::diagnose(input, kWithoutTwins, {});
+  ASSERT_EQ(d.findings.size(), 2U) << names(d);
+  EXPECT_TRUE(d.noise.empty());
+  for (const Finding& f : d.findings) {
+    const bool is_ramp = f.hypothesis.effect->name == "rate_ramp" && f.hypothesis.axis_name() == "y";
+    EXPECT_TRUE(is_ramp || (f.hypothesis.effect->name == "lever_arm_error" && f.hypothesis.axis_name() == "x")) << names(d);
+    EXPECT_NEAR(f.value, is_ramp ? kSlope : -0.1, 4.0 * f.sd);
+  }
+}
+
 TEST(Diagnosis, AScaleFactorOfAGyroIsFound) {
   MissionInput input = test::honest_mission(4);
   for (record::ImuSample& sample : input.imu.samples) sample.dtheta.z() *= 1.01;

@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "coast/record/error.hpp"
+#include "support/spectra.hpp"
 
 namespace coast {
 namespace {
@@ -83,7 +84,7 @@ LowerTriangle turned_round(const LowerTriangle& lower) {
 /// norm of their result; both sides are.
 struct DenseReference {
   explicit DenseReference(const LowerTriangle& lower) : A(Eigen::MatrixXd(lower).selfadjointView<Eigen::Lower>()), ldlt(A) {
-    const Eigen::VectorXd eigenvalues = Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(A, Eigen::EigenvaluesOnly).eigenvalues();
+    const Eigen::VectorXd eigenvalues = test::eigenvalues(A);
     const auto n = static_cast<double>(A.rows());
     inverse = ldlt.solve(Eigen::MatrixXd::Identity(A.rows(), A.cols()));
     tolerance = 2.0 * n * std::numeric_limits<double>::epsilon() * eigenvalues.maxCoeff() / eigenvalues.minCoeff();
@@ -301,9 +302,7 @@ TEST(SparseCholesky, ConditionIsThatOfTheScaledMatrix) {
     lower = (units.asDiagonal() * lower * units.asDiagonal()).eval();
     const Eigen::MatrixXd A = Eigen::MatrixXd(lower).selfadjointView<Eigen::Lower>();
     const Eigen::VectorXd s = A.diagonal().cwiseSqrt().cwiseInverse();
-    const Eigen::VectorXd eigenvalues =
-        Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(s.asDiagonal() * A * s.asDiagonal(), Eigen::EigenvaluesOnly)
-            .eigenvalues();
+    const Eigen::VectorXd eigenvalues = test::eigenvalues(s.asDiagonal() * A * s.asDiagonal());
     const double condition = eigenvalues.maxCoeff() / eigenvalues.minCoeff();
     SparseCholesky factor(lower);
     factor.factorize(lower);

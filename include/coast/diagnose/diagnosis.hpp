@@ -126,6 +126,9 @@ struct DiagnosisOptions {
   int most_effects = 6;
   std::uint64_t seed = 1;
   int twins = 20;  ///< of each model; 0: none
+  /// `gnss.time_offset_s` by which turns of GNSS and IMU match best (io::inspect). Where it is far from the configured one, the
+  /// search begins with a run there: no score that is linear about the configured one tells of it.
+  std::optional<double> time_offset_s = {};
 };
 
 /// Stepwise: the mission is run; of all hypotheses beside those taken the likeliest by Bayes factor is taken where the largest

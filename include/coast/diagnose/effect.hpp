@@ -77,7 +77,8 @@ struct Effect {
   std::string_view separating_manoeuvre{};  ///< what would tell it from what it looks like
   std::string_view source{};
   std::vector<std::string> axes{};  ///< "x", or "zy": response z, cause y; "" where there is only one
-  /// Standard deviation of what is plausible, by grade; what the effect does not depend on the IMU for is the same for all.
+  /// Scale of what is plausible (of a Cauchy prior: half of all are smaller), by grade; what the effect does not depend on the
+  /// IMU for is the same for all.
   std::array<double, 4> plausible{};
   bool needs_temperature = false;
   bool needs_reference = false;  ///< nothing in the recording can show it

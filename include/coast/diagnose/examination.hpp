@@ -68,11 +68,18 @@ struct LargestByChance {
 struct Suspicions {
   std::vector<Suspicion> all;  ///< by hypothesis; what cannot be seen at all is left out
   LargestByChance chance;
+  /// With what chance does as it is known already, where there were no draws.
+  void judge(const LargestByChance& by_chance);
   Eigen::MatrixXd correlation;  ///< of the whole-mission estimates with each other, all hypotheses; 1 or -1: the same
 };
 /// @param taken  hypotheses of the whole mission that are estimated beside each one
 [[nodiscard]] Suspicions suspicions(const Examination& examination, const Hypotheses& hypotheses,
                                     const std::vector<Eigen::Index>& taken);
+
+/// Logarithm of the ratio of the likelihoods of a coefficient c ~ Cauchy(0, plausible) and of c = 0 (Jeffreys, Theory of
+/// Probability, 3rd ed., section 5.2). Under a normal prior an effect of thirty times what is plausible would never be
+/// believed, however much it explains.
+[[nodiscard]] double log_bayes_factor(double score, double information, double plausible);
 
 /// Smallest coefficient that is found with probability 0.8 where a likelihood ratio of `threshold` is asked for (Baarda's
 /// minimal detectable bias). @param sd  of its estimate

@@ -13,7 +13,7 @@ namespace coast::diagnose {
 struct Hypothesis {
   const Effect* effect = nullptr;
   Eigen::Index axis = 0;
-  double plausible = 0.0;  ///< standard deviation of its prior
+  double plausible = 0.0;  ///< scale of its Cauchy prior
   [[nodiscard]] bool begins_at_some_time() const { return effect->begins == Effect::Begins::kAtSomeTime; }
   [[nodiscard]] const std::string& axis_name() const { return effect->axes[static_cast<std::size_t>(axis)]; }
 };
