@@ -49,8 +49,7 @@ bool hold_out(Searched& searched) {
     searched.held_out = verification.all;
     const std::vector<Verification::Effect>& effects = verification.effects;
     if (std::ranges::all_of(effects, &Verification::Effect::holds)) {
-      for (std::size_t i = 0; i < effects.size(); ++i)
-        if (!effects[i].begins) search.set_held_out(i, effects[i].gain);
+      for (std::size_t i = 0; i < effects.size(); ++i) search.set_held_out(i, effects[i].gain);
       return gave_up;
     }
     const auto worst = std::ranges::min_element(

@@ -1,12 +1,14 @@
 #include "verification.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 namespace coast::diagnose {
 
 namespace {
 
-constexpr double kBlock = 30.0;  // s: longer than innovations are correlated
+constexpr double kBlock = 30.0;    // s: longer than innovations are correlated
+constexpr double kFarthest = 3.0;  // sd by which half of the mission may move what begins at some time
 
 /// Blocks of the mission from its first fix.
 class Blocks {
@@ -39,11 +41,11 @@ std::vector<double> log_likelihoods(const MissionInput& input, const Blocks& blo
 }  // namespace
 
 // What gains much in few blocks and loses in most of the others explains an accident. What says nothing in a block is better
-// there as often as not. What begins at some time speaks at its beginning alone, and no other block knows its size.
+// there as often as not; what begins at some time speaks at its beginning alone.
 bool Verification::Effect::holds() const {
   constexpr double kDeviations = 2.33;  // of a binomial share: 1 %
-  if (begins) return true;
-  return gain > 0.0 && better > 0.5 - kDeviations * 0.5 / std::sqrt(static_cast<double>(blocks));
+  if (!(gain > 0.0)) return false;
+  return begins || better > 0.5 - kDeviations * 0.5 / std::sqrt(static_cast<double>(blocks));
 }
 
 Verification verify(const Search& search) {
@@ -57,8 +59,11 @@ Verification verify(const Search& search) {
     const Examination examination = search.examined([&](geo::GpsTime t) { return blocks.of(t) % 2 != fold; }, 0);
     std::vector<Taken> values = search.taken();
     const Movement moved = movement(examination, values);
-    for (std::size_t i = 0; i < values.size(); ++i)
-      if (!values[i].from) values[i].value += moved.by[i];
+    for (std::size_t i = 0; i < values.size(); ++i) {
+      // An entry and its exit are not estimated together: blocks that lie on one side of both give each what is the other's.
+      const double most = values[i].from ? kFarthest * search.sd(i) : std::abs(moved.by[i]);
+      values[i].value += std::clamp(moved.by[i], -most, most);
+    }
     const std::vector<double> all = log_likelihoods(search.with_values(values), blocks);
     for (std::size_t b = fold; b < blocks.count(); b += 2) with[b] = all[b];
     for (std::size_t i = 0; i < values.size(); ++i) {

@@ -99,8 +99,8 @@ TEST(Diagnosis, AScaleFactorOfAGyroIsFound) {
 }
 
 TEST(Diagnosis, ABiasThatJumpsIsFoundWithItsInstant) {
-  MissionInput input = test::honest_mission(5);
-  const geo::GpsTime jump = input.imu.samples.front().t + 170.0;
+  MissionInput input = test::honest_mission(5, 240.0);
+  const geo::GpsTime jump = input.imu.samples.front().t + 120.0;
   for (record::ImuSample& sample : input.imu.samples)
     if (sample.t > jump) sample.dtheta.z() += 1e-3 * sample.dt;
   const Diagnosis d = diagnose::diagnose(input, kWithoutTwins, {});
@@ -112,8 +112,8 @@ TEST(Diagnosis, ABiasThatJumpsIsFoundWithItsInstant) {
 }
 
 TEST(Diagnosis, AWrongFixIsFoundWithBothItsEnds) {
-  MissionInput input = test::honest_mission(6);
-  const geo::GpsTime from = input.gnss.fixes.front().t + 150.0;
+  MissionInput input = test::honest_mission(6, 240.0);
+  const geo::GpsTime from = input.gnss.fixes.front().t + 100.0;
   for (record::GnssFix& fix : input.gnss.fixes)
     if (fix.t >= from && fix.t < from + 30.0) fix.r_ea_e += Eigen::Vector3d(0.0, 0.0, 0.4);  // up and north here
   const Diagnosis d = diagnose::diagnose(input, kWithoutTwins, {});
@@ -135,7 +135,7 @@ const NoiseFinding* noise_named(const Diagnosis& d, std::string_view name, std::
 
 // The factor by which a scale factor moves what is measured, on data that its size was not estimated from.
 TEST(Diagnosis, WhatIsFoundHoldsOnHeldOutBlocks) {
-  MissionInput input = test::honest_mission(7);
+  MissionInput input = test::honest_mission(15);
   for (record::ImuSample& sample : input.imu.samples) sample.dv.x() *= 1.01;
   const Diagnosis d = diagnose::diagnose(input, kWithoutTwins, {});
   ASSERT_NE(only(d, "accel_scale_factor", "x"), nullptr) << names(d);
@@ -169,7 +169,7 @@ TEST(Diagnosis, AWanderingBiasIsFoundAsNoise) {
 }
 
 TEST(Diagnosis, AnOscillationIsFoundWithItsFrequency) {
-  MissionInput input = test::honest_mission(9);
+  MissionInput input = test::honest_mission(9, 240.0);
   constexpr double kAmplitude = 0.05, kFrequency = 0.11;
   for (record::ImuSample& sample : input.imu.samples)
     sample.dv.y() += kAmplitude * std::sin(2.0 * geo::kPi * kFrequency * (sample.t - input.imu.samples.front().t)) * sample.dt;
@@ -178,7 +178,7 @@ TEST(Diagnosis, AnOscillationIsFoundWithItsFrequency) {
   ASSERT_NE(f, nullptr) << names(d);
   EXPECT_EQ(f->hypothesis.effect->site, Site::kAccel);
   EXPECT_NEAR(f->value, kAmplitude, 4.0 * f->sd);
-  EXPECT_NEAR(f->hypothesis.effect->fixed.front().value, kFrequency, 0.5 / 300.0);  // half a line's width
+  EXPECT_NEAR(f->hypothesis.effect->fixed.front().value, kFrequency, 0.5 / 240.0);  // half a line's width
 }
 
 TEST(Diagnosis, ARelationWithoutANameIsTold) {
