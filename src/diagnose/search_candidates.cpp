@@ -113,8 +113,8 @@ bool Search::take_time_offset() {
 bool Search::review() {
   bool changed = false;
   for (std::size_t left = taken_.size(); left > 0; --left) {
-    std::ranges::rotate(taken_, taken_.begin() + 1);
-    std::ranges::rotate(result_.findings, result_.findings.begin() + 1);
+    std::rotate(taken_.begin(), taken_.begin() + 1, taken_.end());
+    std::rotate(result_.findings.begin(), result_.findings.begin() + 1, result_.findings.end());
     const Taken one = taken_.back();
     if (is_suggested(*run_->hypotheses()[one.hypothesis].effect)) continue;
     taken_.pop_back();
