@@ -185,7 +185,10 @@ TEST_P(EveryCase, InnovationsAreWhiteAndGiveTheLikelihood) {
 
 // The block of means of m samples against the samples themselves: covariances of the dense normal, averaged.
 TEST_P(EveryCase, BlockMeansAreAveragesOfSamples) {
-  if (!model_.has_averages()) GTEST_SKIP() << "a process of this sum has no averages";
+  if (!model_.has_averages()) {
+    EXPECT_EQ(std::string(GetParam().what), "bias_instability");  // flicker's is the only block that has none
+    return;
+  }
   const bool approximate = std::string(GetParam().what) == "oscillating";  // autoregressions are taken as white
   const std::size_t m = 7, blocks = 12;
   const auto grid = [](std::size_t n) { return StaticSignal::regular(std::vector<double>(n, 0.0), 1.0); };

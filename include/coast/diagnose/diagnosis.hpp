@@ -105,8 +105,8 @@ struct Diagnosis {
   std::vector<Detectable> detectable_not_found;
   std::vector<NotObservable> not_observable;
   Grade grade = Grade::kIndustrial;
-  double threshold =
-      0.0;  ///< of the likelihood ratio: the catalogue's share of false alarms, 3 % of clean recordings, exceeds it
+  /// Of the likelihood ratio: 3 % of clean recordings exceed it, the catalogue's share of false alarms.
+  double threshold = 0.0;
   Fit before;
   Fit after;
   PairedDifference outage_change;
@@ -131,12 +131,13 @@ struct DiagnosisOptions {
   std::optional<double> time_offset_s = {};
 };
 
-/// Stepwise: the mission is run; of all hypotheses beside those taken the likeliest by Bayes factor is taken where the largest
-/// likelihood ratio exceeds what chance allows; coefficients of all taken follow (Gauss-Newton), and the mission is run again
-/// without them, until nothing more exceeds. Noise is fitted first where innovations contradict theirs by more than the largest
-/// mean effect explains. Then what was found is held against blocks that its sizes were not estimated from, and given up where
-/// it explains nothing there; and the recording against twins of its mission (twin.hpp) by the configured model and by the
-/// new one.
+/// Stepwise: the mission is run; of all hypotheses beside those taken the likeliest, by Bayes factor and by runs where there
+/// are several, is taken where the largest likelihood ratio exceeds what chance allows; coefficients of all taken follow
+/// (Gauss-Newton), and the mission is run again without them, until nothing more exceeds. Noise, stated or random, is taken
+/// where it explains more than the mean effects do; then the search is made once more with mean effects first, and the likelier
+/// outcome kept. Every effect is put to the test again beside the others. Then what was found is held against blocks that its
+/// sizes were not estimated from, and given up where it explains nothing there; and the recording against twins of its mission
+/// (twin.hpp) by the configured model and by the new one.
 /// @param simulations  the user's own, in place of the twins of the configured model
 [[nodiscard]] Diagnosis diagnose(const MissionInput& input, const DiagnosisOptions& options, const study::Progress& progress,
                                  const std::vector<MissionInput>& simulations = {});

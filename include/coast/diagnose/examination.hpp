@@ -68,9 +68,9 @@ struct LargestByChance {
 struct Suspicions {
   std::vector<Suspicion> all;  ///< by hypothesis; what cannot be seen at all is left out
   LargestByChance chance;
-  /// With what chance does as it is known already, where there were no draws.
-  void judge(const LargestByChance& by_chance);
   Eigen::MatrixXd correlation;  ///< of the whole-mission estimates with each other, all hypotheses; 1 or -1: the same
+  /// By what chance does as it is known already, where there were no draws.
+  void judge(const LargestByChance& by_chance);
 };
 /// @param taken  hypotheses of the whole mission that are estimated beside each one
 [[nodiscard]] Suspicions suspicions(const Examination& examination, const Hypotheses& hypotheses,
