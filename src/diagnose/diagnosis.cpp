@@ -115,6 +115,7 @@ Diagnosis diagnose(const MissionInput& input, const DiagnosisOptions& options, c
     Searched other = begin(Order::kMeansFirst);
     search_to_the_end(other);
     if (other.search->evidence() > best.search->evidence()) std::swap(best, other);
+    best.search->tell_of(*other.search, best.search->evidence() - other.search->evidence());
     further_runs = other.search->runs();
   }
   if (twins > 0 && best.search->has_found_anything()) after = compared(*best.search, {});

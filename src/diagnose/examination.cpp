@@ -189,6 +189,24 @@ Examination examine(const estimate::Mission& mission, const estimate::StateLayou
   return result;
 }
 
+bool Examination::take_draws_of(const Examination& other) {
+  constexpr double kSame = 0.05;  // of the variance of the score of each that lasts the mission
+  const Disturbances& theirs = other.disturbances;
+  if (information.rows() != other.information.rows() || disturbances.t.size() != theirs.t.size()) return false;
+  Eigen::ArrayXd change =
+      (information - other.information).diagonal().array().abs() - kSame * other.information.diagonal().array();
+  for (const Track& track : tracks) change(track.hypothesis) = 0.0;
+  if ((change > 0.0).any()) return false;
+  null_score = other.null_score;
+  for (std::size_t i = 0; i < tracks.size(); ++i) tracks[i].null_largest = other.tracks[i].null_largest;
+  for (std::size_t axis = 0; axis < kAxes; ++axis) {
+    Eigen::MatrixXf rows = theirs.score[axis];
+    rows.row(0) = disturbances.score[axis].row(0);
+    disturbances.score[axis] = std::move(rows);
+  }
+  return true;
+}
+
 LargestByChance LargestByChance::of(std::vector<double> largest) {
   if (largest.empty()) return {};
   const auto middle = largest.begin() + static_cast<std::ptrdiff_t>(largest.size() / 2);

@@ -2,9 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <numeric>
 
 #include "coast/geo/earth.hpp"
+#include "coast/study/interpolation.hpp"
 
 namespace coast::diagnose {
 
@@ -101,8 +103,9 @@ Eigen::Vector3d SignalTable::mean_force_b(std::size_t sample) const {
   return time > 0.0 ? Eigen::Vector3d(sum / time) : Eigen::Vector3d::Zero();
 }
 
-Hypotheses::Hypotheses(const estimate::Mission& mission, Grade grade, const std::vector<EffectPtr>& suggested)
-    : mission_(mission), signals_(mission.imu, mission.C_s_b) {
+Hypotheses::Hypotheses(const estimate::Mission& mission, Grade grade, const std::vector<record::NavState>& path,
+                       const std::vector<EffectPtr>& suggested)
+    : mission_(mission), path_(path), signals_(mission.imu, mission.C_s_b) {
   const auto add = [&](const Effect& effect) {
     if (effect.needs_reference || (effect.needs_temperature && !signals_.has_temperature())) return;
     const auto axes = static_cast<Eigen::Index>(effect.axes.size());
@@ -131,16 +134,23 @@ void Hypotheses::add_sensor_errors(const estimate::SampleView& sample, Eigen::Ma
   accel_b = mission_.C_s_b * accel_b;
 }
 
+record::NavState Hypotheses::smoothed(const record::NavState& filtered) const {
+  const auto behind = std::ranges::lower_bound(path_, filtered.t, {}, &record::NavState::t);
+  if (behind == path_.end() || behind == path_.begin()) return filtered;
+  return study::interpolate(*std::prev(behind), *behind, filtered.t);
+}
+
 void Hypotheses::add_measurement_errors(const estimate::MeasurementView& m, Eigen::MatrixXd& D) const {
   if (m.kind != estimate::UpdateKind::kGnssPosition && m.kind != estimate::UpdateKind::kGnssVelocity) return;
+  const record::NavState nav = smoothed(m.nav);
   FixSignals s;
-  s.C_b_e = m.nav.q_b_e.toRotationMatrix();
+  s.C_b_e = nav.q_b_e.toRotationMatrix();
   s.C_n_e = m.context.C_n_e;
   s.omega_b = m.context.omega_eb_b;
-  s.v_ea_e = m.nav.v_eb_e + s.C_b_e * s.omega_b.cross(m.context.lever_arm_b);
+  s.v_ea_e = nav.v_eb_e + s.C_b_e * s.omega_b.cross(m.context.lever_arm_b);
   const Eigen::Vector3d earth(0.0, 0.0, mission_.earth_rate);
-  s.a_ea_e = s.C_b_e * signals_.mean_force_b(m.sample) + geo::gravity_e(m.nav.r_eb_e) - 2.0 * earth.cross(m.nav.v_eb_e);
-  s.elapsed = m.nav.t - mission_.imu.samples.front().t;
+  s.a_ea_e = s.C_b_e * signals_.mean_force_b(m.sample) + geo::gravity_e(nav.r_eb_e) - 2.0 * earth.cross(nav.v_eb_e);
+  s.elapsed = nav.t - mission_.imu.samples.front().t;
   const bool position = m.kind == estimate::UpdateKind::kGnssPosition;
   Eigen::Matrix3Xd columns(3, D.cols());
   columns.setZero();

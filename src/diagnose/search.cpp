@@ -3,6 +3,7 @@
 #include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <utility>
 
 namespace coast::diagnose {
@@ -11,7 +12,6 @@ namespace {
 
 constexpr double kSettled = 0.1;    // sd that a coefficient may still move
 constexpr double kNear = 1.0;       // likewise, from where on what is left may be something else
-constexpr double kStable = 0.5;     // of a relation, from where it is believed
 constexpr double kUncertain = 0.1;  // of a likelihood ratio whose variance is that of some hundred draws
 
 /// A start that the data decide: it was found by a run that knew nothing of the effect, which may be in it. The filter is
@@ -61,12 +61,11 @@ Search::Search(const MissionInput& input, const DiagnosisOptions& options, Order
 }
 
 bool Search::step() {
-  const Examination examination = examined();
+  Examination examination = examined({}, 0);
+  const std::vector<Taken> before = taken_;
   const double moved = follow(examination);
-  if (moved > kNear) {
-    run_again();
-    return true;
-  }
+  if (moved > kNear && run_moved(before)) return true;
+  add_draws(examination);
   suspicions_ = suspicions(examination, run_->hypotheses(), of_whole_mission());
   result_.threshold = suspicions_.chance.quantile(of_catalogue());
   if (take_time_offset()) return true;
@@ -83,24 +82,32 @@ bool Search::step() {
     try_out(*form);
     return true;
   }
-  if (candidates_.all.empty() && moved < kSettled) return false;
+  if (candidates_.all.empty() && moved < kSettled) return fit_noise_again();
   if (candidates_.all.empty()) {
     run_again();
     return true;
   }
-  if (makes_likelier(winner())) fit_noise_again();
+  if (makes_likelier(winner())) noise_is_behind_ = true;
   return true;
 }
 
 double Search::evidence() const {
-  const double choices = std::log(suspicions_.chance.count);
   const double parameters = noise_ ? static_cast<double>(noise_->fit.names.size()) : 0.0;
-  return run_->log_likelihood() - choices * static_cast<double>(taken_.size() + added_.size()) - parameters;
+  double prices = parameters + log_choices() * static_cast<double>(taken_.size());
+  for (const Finding& f : result_.findings) prices += f.price;
+  for (const NoiseFinding& f : random_effects_) prices += price_of_random_effect(f.sd / f.value);
+  return run_->log_likelihood() - prices;
 }
 
 Examination Search::examined(const std::function<bool(geo::GpsTime)>& counts, Eigen::Index draws) const {
   return examine(run_->mission(), run_->layout(), run_->solution().knots, run_->hypotheses(),
                  {.draws = draws, .seed = options_.seed, .counts = counts});
+}
+
+void Search::add_draws(Examination& examination) {
+  if (drawn_ && examination.take_draws_of(*drawn_)) return;
+  drawn_ = examined();
+  examination = *drawn_;
 }
 
 double Search::of_catalogue() const {
@@ -125,6 +132,37 @@ void Search::run_from(const MissionRun& last) {
   run_current();
 }
 
+double Search::likelihood_from(const MissionRun& last) {
+  try {
+    run_from(last);
+    return run_->log_likelihood();
+  } catch (const NumericalError&) {
+    run_.reset();
+    return -std::numeric_limits<double>::infinity();
+  }
+}
+
+bool Search::run_moved(const std::vector<Taken>& before) {
+  constexpr int kHalvings = 3;
+  constexpr double kLess = 3.0;  // that a run may be for the other point about which it is linearised
+  const std::unique_ptr<MissionRun> start = std::move(run_);
+  for (int i = 0; i <= kHalvings; ++i) {
+    if (likelihood_from(*start) > start->log_likelihood() - kLess) return true;
+    for (std::size_t k = 0; k < taken_.size(); ++k) taken_[k].value = 0.5 * (taken_[k].value + before[k].value);
+  }
+  taken_ = before;
+  run_from(*start);
+  return false;
+}
+
+void Search::settle() {
+  constexpr int kMost = 8;
+  for (int i = 0; i < kMost; ++i) {
+    const std::vector<Taken> before = taken_;
+    if (follow(examined({}, 0)) < kNear || !run_moved(before)) return;
+  }
+}
+
 MissionInput Search::with_values(const std::vector<Taken>& taken) const {
   MissionInput input = without(taken, input_, run_->hypotheses(), run_->path(), run_->mission(), run_->layout());
   model_noise(input);
@@ -141,7 +179,7 @@ void Search::give_up(std::size_t index) {
   taken_.erase(taken_.begin() + at);
   result_.findings.erase(result_.findings.begin() + at);
   run_again();
-  fit_noise_again();
+  noise_is_behind_ = true;
 }
 
 void Search::model_noise(MissionInput& input) const {
@@ -208,83 +246,6 @@ double Search::follow(const Examination& e) {
   for (std::size_t i = 0; i < taken_.size(); ++i)
     if (i == *farthest || (!taken_[i].from && !taken_[*farthest].from)) taken_[i].value += moved.by[i];
   return deviation(*farthest);
-}
-
-std::optional<Proposal> Search::likeliest_form(const Examination& examination) const {
-  std::optional<Proposal> best;
-  for (const std::optional<Proposal>& form : {strongest_line(examination), likeliest_relation(examination, *run_)}) {
-    if (!form || form->p_value > kFormFalseAlarm || form->stability < kStable || was_refused(*form)) continue;
-    if (!best || form->likelihood_ratio - 2.0 * form->log_places > best->likelihood_ratio - 2.0 * best->log_places) best = form;
-  }
-  return best;
-}
-
-bool Search::was_refused(const Proposal& form) const {
-  return std::ranges::any_of(refused_forms_, [&](const EffectPtr& e) {
-    return e->name == form.effect->name && e->site == form.effect->site && e->axes == form.effect->axes &&
-           e->relation == form.effect->relation;
-  });
-}
-
-EffectPtr Search::refined(const EffectPtr& line) {
-  constexpr int kSide = 6;
-  constexpr double kStep = 0.1;  // of a line's width
-  const double span = run_->mission().imu.samples.back().t - run_->mission().imu.samples.front().t;
-  const std::vector<EffectPtr> before = suggested_;
-  std::vector<EffectPtr> lines;
-  for (int i = -kSide; i <= kSide; ++i)
-    lines.push_back(harmonic_disturbance(line->site, line->axes.front().front() - 'x', line->fixed[0].value + i * kStep / span,
-                                         line->fixed[1].value));
-  suggested_.insert(suggested_.end(), lines.begin(), lines.end());
-  const std::unique_ptr<MissionRun> start = std::move(run_);
-  run_from(*start);
-  const Examination e = examined({}, 0);
-  const auto first = static_cast<Eigen::Index>(run_->hypotheses().size()) - 2 * static_cast<Eigen::Index>(lines.size());
-  std::vector<double> ratio;
-  for (Eigen::Index at = first; at < run_->hypotheses().size(); at += 2) {
-    const Eigen::Vector2d score = e.score.segment<2>(at);
-    ratio.push_back(score.dot(Eigen::Matrix2d(e.information.block<2, 2>(at, at)).ldlt().solve(score)));
-  }
-  const auto best = static_cast<std::size_t>(std::ranges::max_element(ratio) - ratio.begin());
-  double shift = 0.0;  // of the vertex of the parabola through the largest and its neighbours
-  if (best > 0 && best + 1 < ratio.size())
-    shift = 0.5 * (ratio[best + 1] - ratio[best - 1]) / (2.0 * ratio[best] - ratio[best - 1] - ratio[best + 1]);
-  suggested_ = before;
-  run_from(*start);
-  return harmonic_disturbance(line->site, line->axes.front().front() - 'x', lines[best]->fixed[0].value + shift * kStep / span,
-                              line->fixed[1].value);
-}
-
-void Search::try_out(const Proposal& form) {
-  const double before = run_->log_likelihood();
-  const std::vector<Taken> taken = taken_;
-  const std::vector<Finding> findings = result_.findings;
-  suggested_.push_back(form.effect->relation.empty() ? refined(form.effect) : form.effect);
-  const std::unique_ptr<MissionRun> start = std::move(run_);
-  run_from(*start);
-  const auto first = static_cast<Eigen::Index>(run_->hypotheses().size()) - static_cast<Eigen::Index>(form.effect->axes.size());
-  for (Eigen::Index i = first; i < run_->hypotheses().size(); ++i)
-    take({.hypothesis = i,
-          .from = {},
-          .likelihood_ratio = form.likelihood_ratio,
-          .log_bayes = 0.5 * form.likelihood_ratio - form.log_places,
-          .p_value = form.p_value});
-  static_cast<void>(follow(examined()));
-  run_again();
-  const double gained = run_->log_likelihood() - before;
-  if (gained - form.log_places > std::max(candidates_.gain, -std::log(kFormFalseAlarm))) {
-    refused_.clear();
-    fit_noise_again();
-    Finding& found = result_.findings[taken.size()];
-    found.delta_log_likelihood = gained;
-    if (!form.effect->relation.empty()) found.stability = form.stability;
-    return;
-  }
-  refused_forms_.push_back(form.effect);
-  suggested_.pop_back();
-  taken_ = taken;
-  result_.findings = findings;
-  run_from(*start);
 }
 
 }  // namespace coast::diagnose

@@ -1,6 +1,7 @@
 #pragma once
 // The search for effects, step by step; private to the room.
 
+#include <cmath>
 #include <memory>
 
 #include "form_scan.hpp"
@@ -22,6 +23,7 @@ struct Candidate {
 struct Candidates {
   std::vector<Candidate> all;  ///< the likeliest first
   double gain = 0.0;           ///< largest in log-likelihood, as far as known
+  double evidence = 0.0;       ///< likewise, less what their sizes and onsets and the choice among effects cost
 };
 
 /// What is taken where both explain the same. A random effect stands for two mean effects as well as for one, and beats each by
@@ -45,8 +47,12 @@ class Search {
   }
   [[nodiscard]] bool has_taken_noise() const { return noise_.has_value() || !added_.empty(); }
   [[nodiscard]] std::size_t runs() const { return result_.runs; }
-  /// Log-likelihood less what choosing among so many costs.
+  /// Logarithm of the likelihood, less what was plausible and not so of sizes, onsets and effects: by it whole explanations
+  /// are compared.
   [[nodiscard]] double evidence() const;
+  /// What another search found where this one found something else, as alternatives.
+  /// @param log_odds  by which this explanation is the likelier one
+  void tell_of(const Search& other, double log_odds);
   [[nodiscard]] double sd(std::size_t index) const { return result_.findings[index].sd; }
   /// Sine and cosine of an oscillation belong together.
   [[nodiscard]] bool is_part_of_a_line(std::size_t index) const {
@@ -69,10 +75,19 @@ class Search {
 
  private:
   [[nodiscard]] double of_catalogue() const;
+  /// What draws say beside an examination that had none: those of an earlier run, where they still hold.
+  void add_draws(Examination& examination);
   [[nodiscard]] std::size_t most() const { return static_cast<std::size_t>(options_.most_effects); }
   void run_again();
   /// @param last  a run whose trajectory the effects are taken out along
   void run_from(const MissionRun& last);
+  /// Lets what was taken move until it stays where it is.
+  void settle();
+  /// As run_from. @return  its log-likelihood; minus infinity, and no run, where the filter does not get through
+  double likelihood_from(const MissionRun& last);
+  /// Runs with the values that coefficients have moved to, half as far as long as that is less likely: a step of Gauss-Newton
+  /// may be too long, or, where nothing is linear, wrong. @return  whether they moved at all
+  bool run_moved(const std::vector<Taken>& before);
   void run_current();
   void model_noise(MissionInput& input) const;
 
@@ -84,8 +99,9 @@ class Search {
   bool take_noise(const Examination& examination, double form_gain);
   /// Of what is stated, from the last fit on; none where chance explains the difference.
   void fit_noise();
-  /// What was taken since may be what it stood for.
-  void fit_noise_again();
+  /// What was taken since the last fit may be what noise stood for. Once nothing else is left to be done: it costs a hundred
+  /// runs. @return  whether that may show more
+  bool fit_noise_again();
   /// The likeliest random effect of an axis, and on the same axis the others, whose gains are set against each other.
   /// @param to_beat  gain of another way to model noise
   bool take_random_effect(const Examination& examination, double to_beat);
@@ -102,8 +118,16 @@ class Search {
   void run_candidates();
   /// Whether something else explains more than every candidate, by runs of these where their scores leave it open.
   [[nodiscard]] bool beats_candidates(double gain);
+  /// Whether it is also the likelier explanation, with all that choosing costs.
+  [[nodiscard]] bool is_likelier_than_candidates(double evidence);
+  /// Logarithm of the number of mean effects of which one is chosen.
+  [[nodiscard]] double log_choices() const { return std::log(static_cast<double>(run_->hypotheses().size())); }
+  [[nodiscard]] double evidence_of(const Suspicion& s) const { return s.log_bayes - log_choices(); }
   /// Begins at the time offset that turns tell, where that is likelier. @return  whether it was taken
   bool take_time_offset();
+  /// What was taken already stands among the candidates with what it is known to gain, which is more than its score tells where
+  /// nothing is linear.
+  void reconsider(const Taken& one, double gain);
   /// The likeliest candidate, by runs where there are several.
   [[nodiscard]] Suspicion winner();
   /// A line or a relation that no catalogue has, where chance does not explain it.
@@ -126,6 +150,8 @@ class Search {
   double follow(const Examination& e);
 
   // For people (search_result.cpp).
+  /// Everything found, by name.
+  [[nodiscard]] std::vector<Alternative> found() const;
   /// Of the noise that is stated, what the configuration does not want estimated anyway.
   [[nodiscard]] std::vector<NoiseFinding> noise_findings() const;
   /// An effect that is taken back later by an equal jump the other way lasted until then: a wrong fix.
@@ -145,11 +171,13 @@ class Search {
   std::vector<Taken> taken_;
   std::vector<Eigen::Index> refused_;   ///< until another is taken
   std::vector<Eigen::Index> given_up_;  ///< for good
+  std::optional<Examination> drawn_;
   Suspicions suspicions_;
   Candidates candidates_;  ///< that this step chooses among
   std::optional<FittedNoise> noise_;
   std::optional<estimate::NoiseFit> last_fit_;
   bool noise_tried_ = false;
+  bool noise_is_behind_ = false;  ///< something was taken or given up since it was fitted
   std::vector<EffectPtr> suggested_;
   std::vector<EffectPtr> refused_forms_;  ///< for good
   std::vector<AddedNoise> added_;
@@ -165,13 +193,19 @@ struct Movement {
 };
 [[nodiscard]] Movement movement(const Examination& e, const std::vector<Taken>& taken);
 
-[[nodiscard]] Alternative alternative(const FittedEffect& fit, double gain);
+[[nodiscard]] Alternative alternative(const FittedEffect& fit, double log_odds);
+/// Alternatives are told where the data alone, or with what is plausible, hold them for more than a thousandth as likely, by
+/// the larger of the two.
+[[nodiscard]] std::optional<double> log_odds_told(double by_data, double by_evidence);
+/// What a random effect costs in evidence: that it is this one of all, of this size.
+/// @param log_sd  of the root of its variance
+[[nodiscard]] double price_of_random_effect(double log_sd);
+[[nodiscard]] double evidence_of(const FittedEffect& fit);
 [[nodiscard]] inline std::string axis_letter(int axis) {
   return {static_cast<char>('x' + axis)};
 }
 
-// Alternatives are told where the data alone, or with what is plausible, hold them for more than a thousandth as likely.
-inline constexpr double kLogOdds = 7.0;
+inline constexpr double kLogOdds = 7.0;  // of alternatives that are told: a thousandth as likely
 // Of the false alarms that are allowed the catalogue has what these leave.
 inline constexpr double kNoiseFalseAlarm = 0.01;  // random effects
 inline constexpr double kFormFalseAlarm = 0.005;  // lines, and relations

@@ -11,7 +11,8 @@ namespace coast::diagnose {
 
 namespace {
 
-constexpr double kLinear = 0.1;  // share of a gain that the scores of a large effect do not know
+constexpr double kLinear = 0.1;     // share of a gain that the scores of a large effect do not know
+constexpr double kNotLinear = 1.3;  // times what its score tells: an effect that gains more is not to be judged by scores
 constexpr std::size_t kMostByRuns = 3;
 
 }  // namespace
@@ -28,8 +29,11 @@ Candidates Search::candidates() const {
     result.all.push_back({s, {}});
   }
   if (result.all.empty()) return result;
-  for (const Suspicion& s : suspicions_.all)
-    if (!was_refused(s)) result.gain = std::max(result.gain, 0.5 * s.likelihood_ratio);
+  for (const Suspicion& s : suspicions_.all) {
+    if (was_refused(s)) continue;
+    result.gain = std::max(result.gain, 0.5 * s.likelihood_ratio);
+    result.evidence = std::max(result.evidence, evidence_of(s));
+  }
   std::ranges::sort(result.all, std::ranges::greater{}, [](const Candidate& c) { return c.suspicion.log_bayes; });
   const double best = result.all.front().suspicion.log_bayes;
   std::erase_if(result.all,
@@ -44,29 +48,36 @@ double Search::gain_by_runs(const Suspicion& s) {
   const MissionInput input = current_;
   std::unique_ptr<MissionRun> start = std::move(run_);
   taken_.push_back({s.hypothesis, s.from, {}, s.estimate});
-  run_from(*start);
-  const double first = run_->log_likelihood() - before;
-  const Movement moved = movement(examined({}, 0), taken_);
-  for (std::size_t i = 0; i < taken_.size(); ++i)
-    if (i + 1 == taken_.size() || (!taken_[i].from && !s.from)) taken_[i].value += moved.by[i];
-  run_again();
-  const double second = run_->log_likelihood() - before;
+  double best = likelihood_from(*start);
+  if (run_ != nullptr) {
+    const Movement moved = movement(examined({}, 0), taken_);
+    const std::unique_ptr<MissionRun> first = std::move(run_);
+    for (std::size_t i = 0; i < taken_.size(); ++i)
+      if (i + 1 == taken_.size() || (!taken_[i].from && !s.from)) taken_[i].value += moved.by[i];
+    best = std::max(best, likelihood_from(*first));
+  }
   taken_ = taken;
   current_ = input;
   run_ = std::move(start);
-  return std::max(first, second);
+  return best - before;
 }
 
 void Search::run_candidates() {
   for (Candidate& c : candidates_.all) {
     if (!c.by_runs) c.by_runs = gain_by_runs(c.suspicion);
     candidates_.gain = std::max(candidates_.gain, *c.by_runs);
+    candidates_.evidence = std::max(candidates_.evidence, c.log_bayes() - log_choices());
   }
 }
 
 bool Search::beats_candidates(double gain) {
   if (gain > candidates_.gain) run_candidates();
   return gain > candidates_.gain;
+}
+
+bool Search::is_likelier_than_candidates(double evidence) {
+  if (evidence > candidates_.evidence) run_candidates();
+  return evidence > candidates_.evidence;
 }
 
 Suspicion Search::winner() {
@@ -80,8 +91,7 @@ bool Search::makes_likelier(const Suspicion& s) {
   take(s);
   const std::unique_ptr<MissionRun> start = std::move(run_);
   for (int i = 0; i <= kHalvings; ++i, taken_.back().value *= 0.5) {
-    run_from(*start);
-    const double gained = run_->log_likelihood() - before;
+    const double gained = likelihood_from(*start) - before;
     if (gained < 0.5 * result_.threshold) continue;
     result_.findings.back().delta_log_likelihood = gained;
     refused_.clear();
@@ -98,16 +108,35 @@ bool Search::take_time_offset() {
   constexpr double kFar = 0.1;  // s
   const std::optional<double> guess = std::exchange(options_.time_offset_s, std::nullopt);
   if (!guess || std::abs(*guess - input_.setup.time_offset_s) < kFar) return false;
+  // Noise that was fitted there explains how nothing fits, and would explain it ever after.
+  const std::optional<FittedNoise> fitted = std::exchange(noise_, std::nullopt);
+  if (fitted) run_again();
   const auto at =
       std::ranges::find_if(run_->hypotheses().all(), [](const Hypothesis& h) { return h.effect->name == "gnss_time_offset"; });
   if (!makes_likelier(
-          {.hypothesis = at - run_->hypotheses().all().begin(), .from = {}, .estimate = *guess - input_.setup.time_offset_s}))
+          {.hypothesis = at - run_->hypotheses().all().begin(), .from = {}, .estimate = *guess - input_.setup.time_offset_s})) {
+    noise_ = fitted;
+    run_again();
     return false;
+  }
   Finding& finding = result_.findings.back();
   finding.p_value = suspicions_.chance.p_value(2.0 * finding.delta_log_likelihood);
   finding.alternatives.clear();  // what looked like it at the configured offset
-  fit_noise_again();
+  settle();
+  last_fit_.reset();
+  noise_is_behind_ = true;
+  if (fitted) fit_noise();
   return true;
+}
+
+void Search::reconsider(const Taken& one, double gain) {
+  auto at = std::ranges::find(candidates_.all, one.hypothesis, [](const Candidate& c) { return c.suspicion.hypothesis; });
+  if (at == candidates_.all.end()) {
+    const auto suspicion = std::ranges::find(suspicions_.all, one.hypothesis, &Suspicion::hypothesis);
+    if (suspicion == suspicions_.all.end() || gain < 0.5 * result_.threshold) return;
+    at = candidates_.all.insert(candidates_.all.end(), {*suspicion, {}});
+  }
+  at->by_runs = gain;
 }
 
 bool Search::review() {
@@ -117,6 +146,7 @@ bool Search::review() {
     std::rotate(result_.findings.begin(), result_.findings.begin() + 1, result_.findings.end());
     const Taken one = taken_.back();
     if (is_suggested(*run_->hypotheses()[one.hypothesis].effect)) continue;
+    const double with_it = run_->log_likelihood();
     taken_.pop_back();
     result_.findings.pop_back();
     run_again();
@@ -124,15 +154,29 @@ bool Search::review() {
     suspicions_ = suspicions(examined({}, 0), run_->hypotheses(), of_whole_mission());
     suspicions_.judge(chance);
     candidates_ = candidates();
+    const double gain = with_it - run_->log_likelihood();
+    reconsider(one, gain);
     if (candidates_.all.empty()) {
       changed = true;
       continue;
     }
     Suspicion best = winner();
-    if (best.hypothesis == one.hypothesis) std::tie(best.from, best.estimate) = std::tie(one.from, one.value);
+    if (best.hypothesis == one.hypothesis) {
+      std::tie(best.from, best.estimate) = std::tie(one.from, one.value);
+      if (gain > kNotLinear * 0.5 * best.likelihood_ratio) {
+        best.log_bayes += gain - 0.5 * best.likelihood_ratio;
+        best.likelihood_ratio = 2.0 * gain;
+      }
+    }
     if (!makes_likelier(best) || best.hypothesis != one.hypothesis) changed = true;
   }
+  if (changed) noise_is_behind_ = true;
   return changed;
+}
+
+std::optional<double> log_odds_told(double by_data, double by_evidence) {
+  if (std::min(by_data, by_evidence) >= kLogOdds) return std::nullopt;
+  return std::max(by_data, by_evidence);
 }
 
 Alternative Search::alternative(const Suspicion& s, double log_odds) const {
@@ -150,17 +194,18 @@ void Search::take(const Suspicion& s) {
                   .value = s.estimate,
                   .sd = s.sd,
                   .p_value = s.p_value,
+                  .price = 0.5 * s.likelihood_ratio - s.log_bayes,
                   .held_out_gain = {},
                   .alternatives = {},
                   .stability = {}};
-  for (const Suspicion& other : suspicions_.all)
-    if (other.hypothesis != s.hypothesis &&
-        (s.log_bayes - other.log_bayes < kLogOdds || s.likelihood_ratio - other.likelihood_ratio < 2.0 * kLogOdds))
-      finding.alternatives.push_back(
-          alternative(other, std::max(s.log_bayes - other.log_bayes, 0.5 * (s.likelihood_ratio - other.likelihood_ratio))));
+  for (const Suspicion& other : suspicions_.all) {
+    if (other.hypothesis == s.hypothesis) continue;
+    if (const auto odds = log_odds_told(0.5 * (s.likelihood_ratio - other.likelihood_ratio), s.log_bayes - other.log_bayes))
+      finding.alternatives.push_back(alternative(other, *odds));
+  }
   for (const FittedEffect& fit : beaten_)
-    if (0.5 * s.likelihood_ratio - fit.gain < kLogOdds)
-      finding.alternatives.push_back(diagnose::alternative(fit, 0.5 * s.likelihood_ratio));
+    if (const auto odds = log_odds_told(0.5 * s.likelihood_ratio - fit.gain, evidence_of(s) - diagnose::evidence_of(fit)))
+      finding.alternatives.push_back(diagnose::alternative(fit, *odds));
   std::ranges::sort(finding.alternatives, {}, &Alternative::log_odds);
   result_.findings.push_back(std::move(finding));
 }

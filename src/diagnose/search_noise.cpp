@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "search.hpp"
 
@@ -70,18 +71,21 @@ bool Search::take_noise(const Examination& examination, double form_gain) {
 }
 
 void Search::fit_noise() {
+  noise_is_behind_ = false;
   noise_ = fitted_noise(run_->prepared(), last_fit_, progress_);
   if (!noise_) return;
   last_fit_ = noise_->fit;
   run_again();
 }
 
-void Search::fit_noise_again() {
-  noise_tried_ = false;
-  if (!noise_) return;
+bool Search::fit_noise_again() {
+  if (!std::exchange(noise_is_behind_, false)) return false;
+  const bool was_tried = std::exchange(noise_tried_, false);
+  if (!noise_) return was_tried;
   noise_.reset();
   run_again();
   fit_noise();
+  return true;
 }
 
 bool Search::take_random_effect(const Examination& examination, double to_beat) {
@@ -99,8 +103,7 @@ bool Search::take_random_effect(const Examination& examination, double to_beat) 
   std::vector<FittedEffect> fits{fitted(*first)};
   const double p_value = suspected.chance.p_value(2.0 * std::max(0.0, fits.front().gain));
   const double gain = fits.front().gain - std::log(suspected.chance.count);
-  // A wandering bias follows a ramp as well as a ramp does: it has to explain more by what choosing among its forms is worth.
-  if (p_value > kNoiseFalseAlarm || gain <= to_beat || !beats_candidates(gain)) {
+  if (p_value > kNoiseFalseAlarm || gain <= to_beat || !is_likelier_than_candidates(diagnose::evidence_of(fits.front()))) {
     if (p_value > kNoiseFalseAlarm) refused_noise_.push_back(first->noise);
     beaten_ = std::move(fits);
     return false;
@@ -120,9 +123,20 @@ bool Search::was_refused(const AddedNoise& noise) const {
   });
 }
 
-Alternative alternative(const FittedEffect& fit, double gain) {
+Alternative alternative(const FittedEffect& fit, double log_odds) {
   return {std::string(fit.noise.effect->name), std::string(name(fit.noise.effect->site)), axis_letter(fit.noise.axis),
-          gain - fit.gain};
+          log_odds};
+}
+
+double evidence_of(const FittedEffect& fit) {
+  return fit.gain - price_of_random_effect(fit.log_sd);
+}
+
+double price_of_random_effect(double log_sd) {
+  constexpr double kRange = 9.21;  // of the root's logarithm: four decades are equally plausible
+  constexpr double kRootTwoPi = 2.5066;
+  const double choices = 3.0 * static_cast<double>(noise_catalogue().size());  // axes of each
+  return std::log(choices) + std::max(0.0, std::log(kRange / (kRootTwoPi * log_sd)));
 }
 
 void Search::describe(const std::vector<FittedEffect>& fits, double p_value) {
@@ -142,10 +156,11 @@ void Search::describe(const std::vector<FittedEffect>& fits, double p_value) {
                        .equation = std::string(f.noise.effect->equation),
                        .separating_manoeuvre = std::string(f.noise.effect->separating_manoeuvre)};
   for (std::size_t i = 1; i < fits.size(); ++i)
-    if (f.gain - fits[i].gain < kLogOdds) finding.alternatives.push_back(diagnose::alternative(fits[i], f.gain));
+    if (f.gain - fits[i].gain < kLogOdds) finding.alternatives.push_back(diagnose::alternative(fits[i], f.gain - fits[i].gain));
   for (const Suspicion& s : suspicions_.all)
-    if (f.gain - 0.5 * s.likelihood_ratio < kLogOdds)
-      finding.alternatives.push_back(alternative(s, f.gain - 0.5 * s.likelihood_ratio));
+    if (const std::optional<double> odds =
+            log_odds_told(f.gain - 0.5 * s.likelihood_ratio, diagnose::evidence_of(f) - evidence_of(s)))
+      finding.alternatives.push_back(alternative(s, *odds));
   std::ranges::sort(finding.alternatives, {}, &Alternative::log_odds);
   random_effects_.push_back(std::move(finding));
 }

@@ -42,6 +42,39 @@ Diagnosis Search::finish() {
   return std::move(result_);
 }
 
+std::vector<Alternative> Search::found() const {
+  std::vector<Alternative> all;
+  for (const Finding& f : result_.findings)
+    all.push_back(
+        {std::string(f.hypothesis.effect->name), std::string(name(f.hypothesis.effect->site)), f.hypothesis.axis_name(), 0.0});
+  const auto add = [&all](const std::vector<NoiseFinding>& noise) {
+    for (const NoiseFinding& f : noise) all.push_back({f.name, f.sensor, f.axis, 0.0});
+  };
+  add(noise_findings());
+  add(random_effects_);
+  return all;
+}
+
+void Search::tell_of(const Search& other, double log_odds) {
+  if (log_odds > kLogOdds) return;
+  const auto same = [](const Alternative& a) {
+    return [&a](const Alternative& b) { return a.name == b.name && a.sensor == b.sensor && a.axis == b.axis; };
+  };
+  const std::vector<Alternative> ours = found();
+  const std::vector<Alternative> theirs = other.found();
+  const auto add = [&](const Alternative& explained, std::vector<Alternative>& alternatives) {
+    if (std::ranges::any_of(theirs, same(explained))) return;
+    for (const Alternative& one : theirs) {
+      if (std::ranges::any_of(ours, same(one))) continue;
+      std::erase_if(alternatives, same(one));
+      alternatives.push_back({one.name, one.sensor, one.axis, log_odds});
+    }
+    std::ranges::sort(alternatives, {}, &Alternative::log_odds);
+  };
+  for (std::size_t i = 0; i < result_.findings.size(); ++i) add(ours[i], result_.findings[i].alternatives);
+  for (NoiseFinding& f : random_effects_) add({f.name, f.sensor, f.axis, 0.0}, f.alternatives);
+}
+
 std::vector<NoiseFinding> Search::noise_findings() const {
   std::vector<NoiseFinding> findings;
   if (!noise_) return findings;

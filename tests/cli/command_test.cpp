@@ -102,18 +102,22 @@ TEST(Commands, ProcessesWhatSimulateWroteAndRepeatsItFromTheResolvedFile) {
   EXPECT_GT(fs::file_size(out / "report.html"), 100000U);
 }
 
+/// What `process` says of a run of the recording. @param name  of run.yaml beside the recording, and of the result in `folder`
+nlohmann::json summary_of(const std::string& run_yaml, const std::string& name, const fs::path& folder) {
+  const fs::path file = recording() / (name + ".yaml");
+  write(file, run_yaml);
+  test::expect_valid("run", test::load_yaml_as_json(file));
+  const Outcome outcome = run(fmt::format("process '{}' --out '{}'", file.string(), (folder / name).string()), folder);
+  EXPECT_EQ(outcome.status, 0) << outcome.error;
+  return nlohmann::json::parse(text_of(folder / name / "summary.json"));
+}
+
 TEST(Commands, BatchIsAsGoodAsTheSmootherAndSaysWhatItDoubts) {
   const test::TemporaryDirectory folder;
   const auto solve = [&](const std::string& name, const std::string& keys_of_gnss, const std::string& keys) {
-    const fs::path file = recording() / (name + ".yaml");
     std::string text = text_of(recording() / "run.yaml") + keys;
     text.insert(text.find("gnss: {") + 7, keys_of_gnss);
-    write(file, text);
-    test::expect_valid("run", test::load_yaml_as_json(file));
-    const Outcome outcome =
-        run(fmt::format("process '{}' --out '{}'", file.string(), (folder.path() / name).string()), folder.path());
-    EXPECT_EQ(outcome.status, 0) << outcome.error;
-    return nlohmann::json::parse(text_of(folder.path() / name / "summary.json"));
+    return summary_of(text, name, folder.path());
   };
   const auto rts = solve("rts", "", "");
   const auto batch = solve("batch", "base_offset_sd_m: 0.3, ", "smoother: batch\nrobust: {loss: cauchy, scale: 3}\n");
@@ -138,6 +142,21 @@ TEST(Commands, BatchIsAsGoodAsTheSmootherAndSaysWhatItDoubts) {
   }
   EXPECT_EQ(offsets, 3);
   EXPECT_NE(text_of(folder.path() / "batch" / "report.html").find("Unknowns of the whole mission"), std::string::npos);
+}
+
+// Away from outages both filters know the fixes; what it leaves out against the smoother may cost a tenth (docs/solutions.md).
+TEST(Commands, CombinedIsDeliveredInPlaceOfTheSmoothed) {
+  const test::TemporaryDirectory folder;
+  const auto rts = summary_of(text_of(recording() / "run.yaml"), "smoothed", folder.path());
+  const auto combined = summary_of(text_of(recording() / "run.yaml") + "smoother: combined\n", "combined", folder.path());
+  test::expect_valid("summary", combined);
+  for (std::size_t i = 0; i < 3; ++i) {
+    const double of_rts = rts["reference"]["smoothed"]["position_rms_m"][i].get<double>();
+    EXPECT_LT(combined["reference"]["smoothed"]["position_rms_m"][i].get<double>(), 1.1 * of_rts + 2e-3) << i;
+  }
+  EXPECT_NE(text_of(folder.path() / "smoothed" / "trajectory.nav"), text_of(folder.path() / "combined" / "trajectory.nav"));
+  EXPECT_NE(text_of(folder.path() / "combined" / "report.html").find("forward and backward filter combined"),
+            std::string::npos);
 }
 
 TEST(Commands, ThreePassesRepeatFromTheResolvedFileAndKeepTheSweepBlind) {
@@ -203,6 +222,8 @@ INSTANTIATE_TEST_SUITE_P(
                     Spoiled{"left-handed axes", "axes: [x, y, z]", "axes: [x, y, -z]", "axes"},
                     Spoiled{"smoother", "reference:", "smoother: best\nreference:", "batch"},
                     Spoiled{"a forward pass too few", "reference:", "filter: {passes: 2}\nreference:", "passes"},
+                    Spoiled{"what both filters would know", "reference:", "filter: {passes: 3}\nsmoother: combined\nreference:",
+                            "a combined solution after 3 passes"},
                     Spoiled{"a vehicle that does not exist", "reference:", "vehicle: tram\nreference:", "tram"},
                     Spoiled{"an outage without end", "duration_s: 20", "duration_s: 0", "duration_s"},
                     Spoiled{"a start without its time",

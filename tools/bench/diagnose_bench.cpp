@@ -36,7 +36,7 @@ void forward_21(benchmark::State& state) {
 
 void judged(benchmark::State& state, Eigen::Index draws) {
   const Filtered f(static_cast<int>(state.range(0)));
-  const diagnose::Hypotheses hypotheses(f.mission, diagnose::Grade::kIndustrial, {});
+  const diagnose::Hypotheses hypotheses(f.mission, diagnose::Grade::kIndustrial, f.recording.truth.states, {});
   for (auto _ : state)
     benchmark::DoNotOptimize(diagnose::examine(f.mission, f.filter.layout(), f.knots, hypotheses, {.draws = draws}).score);
   state.counters["coefficients"] = static_cast<double>(hypotheses.size());

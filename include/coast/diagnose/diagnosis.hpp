@@ -30,6 +30,7 @@ struct Finding {
   double sd = 0.0;
   double delta_log_likelihood = 0.0;  ///< realised: runs with and without it, all others as they are
   double p_value = 1.0;
+  double price = 0.0;  ///< what of the log-likelihood its size and onset cost: 0.5 likelihood ratio - log Bayes factor
   /// Logarithm of the likelihood ratio on blocks that its size was not estimated from, all others in.
   std::optional<double> held_out_gain;
   std::vector<Alternative> alternatives;
@@ -133,11 +134,12 @@ struct DiagnosisOptions {
 
 /// Stepwise: the mission is run; of all hypotheses beside those taken the likeliest, by Bayes factor and by runs where there
 /// are several, is taken where the largest likelihood ratio exceeds what chance allows; coefficients of all taken follow
-/// (Gauss-Newton), and the mission is run again without them, until nothing more exceeds. Noise, stated or random, is taken
-/// where it explains more than the mean effects do; then the search is made once more with mean effects first, and the likelier
-/// outcome kept. Every effect is put to the test again beside the others. Then what was found is held against blocks that its
-/// sizes were not estimated from, and given up where it explains nothing there; and the recording against twins of its mission
-/// (twin.hpp) by the configured model and by the new one.
+/// (Gauss-Newton, as far as the likelihood rises), and the mission is run again without them, until nothing more exceeds.
+/// Random effects are taken where their evidence is larger: likelihood less what sizes, onsets and choices cost. Then the
+/// search is made once more with mean effects first; the outcome with the larger evidence is kept and the other one told beside
+/// it where the difference is small. Every effect is put to the test again beside the others. Then what was found is held
+/// against blocks that its sizes were not estimated from, and given up where it explains nothing there; and the recording
+/// against twins of its mission (twin.hpp) by the configured model and by the new one.
 /// @param simulations  the user's own, in place of the twins of the configured model
 [[nodiscard]] Diagnosis diagnose(const MissionInput& input, const DiagnosisOptions& options, const study::Progress& progress,
                                  const std::vector<MissionInput>& simulations = {});

@@ -28,6 +28,10 @@ struct Examination {
   };
   std::vector<Track> tracks;
   Disturbances disturbances;
+
+  /// Takes over what draws of another examination say, in place of own ones: they depend on covariances, and these hardly
+  /// on what was taken out. @return  whether covariances and hypotheses are those of the other; else nothing was taken
+  bool take_draws_of(const Examination& other);
 };
 
 struct ExaminationOptions {

@@ -43,8 +43,11 @@ class SignalTable {
 class Hypotheses : public estimate::Effects {
  public:
   /// Those that need what the recording does not have are left out. @param mission  must outlive the set
+  /// @param path  the smoothed motion, ascending, along which effects on fixes are seen; must outlive the set. The filter's own
+  /// velocity has in it what the last innovations were, which would be taken for an effect of velocity: a time offset
   /// @param suggested  behind the catalogue's; must outlive the set
-  Hypotheses(const estimate::Mission& mission, Grade grade, const std::vector<EffectPtr>& suggested);
+  Hypotheses(const estimate::Mission& mission, Grade grade, const std::vector<record::NavState>& path,
+             const std::vector<EffectPtr>& suggested);
 
   [[nodiscard]] Eigen::Index size() const override { return static_cast<Eigen::Index>(all_.size()); }
   [[nodiscard]] const std::vector<Hypothesis>& all() const { return all_; }
@@ -61,7 +64,10 @@ class Hypotheses : public estimate::Effects {
     Eigen::Index first;  ///< of its columns
     Eigen::Index count;
   };
+  [[nodiscard]] record::NavState smoothed(const record::NavState& filtered) const;
+
   const estimate::Mission& mission_;
+  const std::vector<record::NavState>& path_;
   SignalTable signals_;
   std::vector<Hypothesis> all_;
   std::vector<Part> parts_;
