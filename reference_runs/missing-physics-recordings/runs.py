@@ -70,9 +70,12 @@ def one(name, make, out):
         subprocess.run([COAST, "diagnose", f"{folder}/run.yaml", "--out", f"{folder}/diagnosis", "--twins", "0", "--threads", "1", "--quiet"], check=True)
     with open(kept) as file:
         d = json.load(file)
-    effects = {f'{e["name"]} {e["sensor"]} {e.get("relation", e["axis"])}'.strip():
-               {"value": e["parameters"][0]["value"], "std": e["parameters"][0].get("std", 0.0), "gain": e["delta_log_likelihood"],
-                "held_out": e.get("held_out_gain")} for e in d["effects"]}
+    effects = {}
+    for e in d["effects"]:
+        key = f'{e["name"]} {e["sensor"]} {e.get("relation", e["axis"])}'.strip()
+        key += f' {sum(k.startswith(key) for k in effects) + 1}' if key in effects else ""
+        effects[key] = {"value": e["parameters"][0]["value"], "std": e["parameters"][0].get("std", 0.0), "gain": e["delta_log_likelihood"],
+                        "held_out": e.get("held_out_gain")}
     v = d["verification"]
     return {"effects": effects, "nis": v["nis"], "log_likelihood_per_epoch": v["log_likelihood_per_epoch"], "outage_rms_m": v["outage_rms_m"],
             "rejected": v["rejected"]}

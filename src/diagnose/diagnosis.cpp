@@ -33,13 +33,6 @@ void step_to_the_end(Search& search) {
   }
 }
 
-/// What was taken for a share of another effect, and is nothing now that this one is known better.
-void forget_what_vanished(Search& search) {
-  constexpr double kNothing = 2.0;  // sd
-  for (std::size_t i = search.taken().size(); i-- > 0;)
-    if (std::abs(search.taken()[i].value) < kNothing * search.sd(i) && !search.is_part_of_a_line(i)) search.give_up(i);
-}
-
 /// What explains nothing on held-out blocks is given up, the worst first. @return  whether something was
 bool hold_out(Searched& searched) {
   Search& search = *searched.search;
@@ -69,7 +62,7 @@ void search_to_the_end(Searched& searched) {
   constexpr int kMostRounds = 4;
   for (int round = 0; round < kMostRounds; ++round) {
     step_to_the_end(*searched.search);
-    forget_what_vanished(*searched.search);
+    searched.search->forget_what_vanished();
     if (!hold_out(searched)) return;
   }
 }

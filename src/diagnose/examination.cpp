@@ -1,6 +1,6 @@
 #include "coast/diagnose/examination.hpp"
 
-#include <Eigen/Cholesky>
+#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -102,38 +102,59 @@ class Recorder {
   geo::GpsTime earliest_;  ///< of an onset: what begins before has been there from the start
 };
 
+/// The hypotheses, and behind them some of them as they act from some instant on.
+class WithStarted : public estimate::Effects {
+ public:
+  WithStarted(const Hypotheses& hypotheses, const std::vector<Examination::Started>& started)
+      : hypotheses_(hypotheses), started_(started) {}
+  [[nodiscard]] Eigen::Index size() const override { return hypotheses_.size() + static_cast<Eigen::Index>(started_.size()); }
+  void add_sensor_errors(const estimate::SampleView& sample, Eigen::Matrix3Xd& gyro_b,
+                         Eigen::Matrix3Xd& accel_b) const override {
+    hypotheses_.add_sensor_errors(sample, gyro_b, accel_b);
+    for_each_at(sample.nav.t, [&](Eigen::Index to, Eigen::Index of) {
+      gyro_b.col(to) = gyro_b.col(of);
+      accel_b.col(to) = accel_b.col(of);
+    });
+  }
+  void add_measurement_errors(const estimate::MeasurementView& measurement, Eigen::MatrixXd& D) const override {
+    hypotheses_.add_measurement_errors(measurement, D);
+    for_each_at(measurement.nav.t, [&](Eigen::Index to, Eigen::Index of) { D.col(to) = D.col(of); });
+  }
+
+ private:
+  template <typename Take>
+  void for_each_at(geo::GpsTime t, const Take& take) const {
+    for (std::size_t k = 0; k < started_.size(); ++k)
+      if (t >= started_[k].from) take(hypotheses_.size() + static_cast<Eigen::Index>(k), started_[k].hypothesis);
+  }
+  const Hypotheses& hypotheses_;
+  const std::vector<Examination::Started>& started_;
+};
+
 /// Scores and information of hypotheses that last the mission, those taken estimated beside them.
 class Conditional {
  public:
   Conditional(const Examination& e, const std::vector<Eigen::Index>& taken) : e_(e), taken_(taken) {
-    if (taken.empty()) return;
-    scale_ = e.information.diagonal()(taken).cwiseSqrt().cwiseInverse();
-    const Eigen::MatrixXd I_aa = scale_.asDiagonal() * e.information(taken, taken) * scale_.asDiagonal();
-    solver_.compute(I_aa);
-    of_taken_ = solver_.solve(Eigen::MatrixXd(scale_.asDiagonal() * e.information(taken, Eigen::all)));
+    if (!taken.empty())
+      of_taken_ = covariance_of(e.information(taken, taken)) * Eigen::MatrixXd(e.information(taken, Eigen::all));
   }
-  [[nodiscard]] double information(Eigen::Index i, Eigen::Index j) const {
-    if (taken_.empty()) return e_.information(i, j);
-    const Eigen::VectorXd to_i = scale_.cwiseProduct(Eigen::VectorXd(e_.information(taken_, i)));
-    return e_.information(i, j) - to_i.dot(of_taken_.col(j));
+  [[nodiscard]] double information(Eigen::Index i) const {
+    if (taken_.empty()) return e_.information(i, i);
+    return e_.information(i, i) - Eigen::VectorXd(e_.information(taken_, i)).dot(of_taken_.col(i));
   }
   [[nodiscard]] double score(Eigen::Index i) const {
     if (taken_.empty()) return e_.score(i);
-    const Eigen::VectorXd s = scale_.cwiseProduct(Eigen::VectorXd(e_.score(taken_)));
-    return e_.score(i) - of_taken_.col(i).dot(s);
+    return e_.score(i) - of_taken_.col(i).dot(Eigen::VectorXd(e_.score(taken_)));
   }
   [[nodiscard]] Eigen::VectorXd null_score(Eigen::Index i) const {
     if (taken_.empty()) return e_.null_score.row(i).transpose();
-    const Eigen::MatrixXd s = scale_.asDiagonal() * Eigen::MatrixXd(e_.null_score(taken_, Eigen::all));
-    return e_.null_score.row(i).transpose() - s.transpose() * of_taken_.col(i);
+    return e_.null_score.row(i).transpose() - Eigen::MatrixXd(e_.null_score(taken_, Eigen::all)).transpose() * of_taken_.col(i);
   }
 
  private:
   const Examination& e_;
   const std::vector<Eigen::Index>& taken_;
-  Eigen::VectorXd scale_;
-  Eigen::LDLT<Eigen::MatrixXd> solver_;
-  Eigen::MatrixXd of_taken_;  ///< I_aa^-1 I_a, scaled
+  Eigen::MatrixXd of_taken_;  ///< I_aa^-1 I_a
 };
 
 /// Whether what is left of the information is more than rounding, and tells more than nothing.
@@ -158,10 +179,18 @@ Suspicion best_of(const Examination::Track& track, const Hypothesis& h) {
   // The interval reaches to the neighbours that are excluded: between two knots nothing tells.
   const geo::GpsTime before = track.t[first > 0 ? first - 1 : 0];
   const geo::GpsTime behind = track.t[std::min(last + 1, track.t.size() - 1)];
-  const double reach = std::max(track.t[best] - before, behind - track.t[best]);
+  geo::GpsTime from = track.t[best];
+  if (!h.effect->sensors && best > 0) {
+    // Of what only fixes see every instant since the last of them is as good. In the middle no shift of tags moves a fix
+    // across.
+    std::size_t fix = best;
+    while (fix + 1 < track.t.size() && ratio(fix + 1) == ratio(best)) ++fix;
+    from = track.t[best - 1] + 0.5 * (track.t[fix] - track.t[best - 1]);
+  }
+  const double reach = std::max(from - before, behind - from);
   const double places = std::max(1.0, (track.t.back() - track.t.front()) / kEpisode);
   return {.hypothesis = track.hypothesis,
-          .from = track.t[best],
+          .from = from,
           .from_sd_s = reach / 1.96,
           .estimate = track.score[best] / track.information[best],
           .sd = 1.0 / std::sqrt(track.information[best]),
@@ -175,6 +204,8 @@ Examination examine(const estimate::Mission& mission, const estimate::StateLayou
                     const Hypotheses& hypotheses, const ExaminationOptions& options,
                     const std::function<void(double)>& progress) {
   Examination result;
+  result.started = options.started;
+  const WithStarted effects(hypotheses, result.started);
   Recorder recorder(hypotheses, options, knots, result);
   simulate::Normal normal(simulate::stream_seed(options.seed, {1}));
   estimate::EffectPassOptions pass;
@@ -184,7 +215,7 @@ Examination examine(const estimate::Mission& mission, const estimate::StateLayou
     for (double& value : values.reshaped()) value = normal();
   };
   pass.progress = progress;
-  estimate::effect_pass(mission, layout, knots, hypotheses, pass, [&](const estimate::Evidence& e) { recorder.add(e); });
+  estimate::effect_pass(mission, layout, knots, effects, pass, [&](const estimate::Evidence& e) { recorder.add(e); });
   recorder.finish();
   return result;
 }
@@ -192,7 +223,8 @@ Examination examine(const estimate::Mission& mission, const estimate::StateLayou
 bool Examination::take_draws_of(const Examination& other) {
   constexpr double kSame = 0.05;  // of the variance of the score of each that lasts the mission
   const Disturbances& theirs = other.disturbances;
-  if (information.rows() != other.information.rows() || disturbances.t.size() != theirs.t.size()) return false;
+  if (information.rows() != other.information.rows() || disturbances.t.size() != theirs.t.size() || started != other.started)
+    return false;
   Eigen::ArrayXd change =
       (information - other.information).diagonal().array().abs() - kSame * other.information.diagonal().array();
   for (const Track& track : tracks) change(track.hypothesis) = 0.0;
@@ -234,7 +266,7 @@ Suspicions suspicions(const Examination& examination, const Hypotheses& hypothes
   for (Eigen::Index i = 0; i < hypotheses.size(); ++i) {
     const Hypothesis& h = hypotheses[i];
     if (h.begins_at_some_time() || std::ranges::find(taken, i) != taken.end()) continue;
-    const double information = conditional.information(i, i);
+    const double information = conditional.information(i);
     if (!is_seen(h, information, examination.information(i, i))) continue;
     const double score = conditional.score(i);
     largest = largest.cwiseMax(conditional.null_score(i).cwiseAbs2() / information);
@@ -252,10 +284,17 @@ Suspicions suspicions(const Examination& examination, const Hypotheses& hypothes
     result.all.push_back(best_of(track, hypotheses[track.hypothesis]));
   }
   result.judge(LargestByChance::of({largest.begin(), largest.end()}));
-  const Eigen::VectorXd scale = examination.information.diagonal().unaryExpr(
-      [](double information) { return information > 0.0 ? 1.0 / std::sqrt(information) : 0.0; });
-  result.correlation = scale.asDiagonal() * examination.information * scale.asDiagonal();
   return result;
+}
+
+Eigen::MatrixXd covariance_of(const Eigen::MatrixXd& information) {
+  constexpr double kSame = 1e-6;  // of the variance: rounding
+  const Eigen::VectorXd scale =
+      information.diagonal().unaryExpr([](double of) { return of > 0.0 ? 1.0 / std::sqrt(of) : 0.0; });
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(scale.asDiagonal() * information * scale.asDiagonal());
+  const Eigen::VectorXd inverse = solver.eigenvalues().unaryExpr([](double of) { return of > kSame ? 1.0 / of : 0.0; });
+  const Eigen::MatrixXd columns = scale.asDiagonal() * solver.eigenvectors();
+  return columns * inverse.asDiagonal() * columns.transpose();
 }
 
 // A Cauchy distribution is a mixture of normal ones with sd = plausible/|n|, n standard normal, and so is the ratio.

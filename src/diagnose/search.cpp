@@ -1,6 +1,5 @@
 #include "search.hpp"
 
-#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -12,6 +11,7 @@ namespace {
 
 constexpr double kSettled = 0.1;    // sd that a coefficient may still move
 constexpr double kNear = 1.0;       // likewise, from where on what is left may be something else
+constexpr double kMuch = 100.0;     // log-likelihood, from where on noise that was fitted without it stood for it
 constexpr double kUncertain = 0.1;  // of a likelihood ratio whose variance is that of some hundred draws
 
 /// A start that the data decide: it was found by a run that knew nothing of the effect, which may be in it. The filter is
@@ -32,16 +32,6 @@ void loosen_start(const study::PreparedMission& mission, const estimate::Smoothe
   }
   input.setup.start = start;
   input.setup.start_sensor_errors = sensor_states_in(layout_of(input), layout, smoothed.x);
-}
-
-/// Estimate and its sd of what remains of an effect that began at some time.
-std::optional<std::pair<double, double>> at_onset(const Examination& e, const Taken& taken) {
-  const auto track = std::ranges::find(e.tracks, taken.hypothesis, &Examination::Track::hypothesis);
-  if (track == e.tracks.end() || track->t.empty()) return std::nullopt;
-  const auto at = std::ranges::lower_bound(track->t, *taken.from);
-  if (at == track->t.end()) return std::nullopt;
-  const auto k = static_cast<std::size_t>(at - track->t.begin());
-  return std::pair(track->score[k] / track->information[k], 1.0 / std::sqrt(track->information[k]));
 }
 
 }  // namespace
@@ -65,8 +55,9 @@ bool Search::step() {
   const std::vector<Taken> before = taken_;
   const double moved = follow(examination);
   if (moved > kNear && run_moved(before)) return true;
+  if (asked_for_ && explained_ > kMuch && fit_noise_again()) return true;
   add_draws(examination);
-  suspicions_ = suspicions(examination, run_->hypotheses(), of_whole_mission());
+  suspicions_ = suspicions(examination, run_->hypotheses(), rows_of(taken_, run_->hypotheses().size()));
   result_.threshold = suspicions_.chance.quantile(of_catalogue());
   if (take_time_offset()) return true;
   const bool is_full = result_.findings.size() >= most();
@@ -87,7 +78,10 @@ bool Search::step() {
     run_again();
     return true;
   }
-  if (makes_likelier(winner())) noise_is_behind_ = true;
+  if (makes_likelier(winner())) {
+    noise_is_behind_ = true;
+    explained_ += result_.findings.back().delta_log_likelihood;
+  }
   return true;
 }
 
@@ -100,8 +94,11 @@ double Search::evidence() const {
 }
 
 Examination Search::examined(const std::function<bool(geo::GpsTime)>& counts, Eigen::Index draws) const {
+  std::vector<Examination::Started> started;
+  for (const Taken& one : taken_)
+    if (one.from) started.push_back({one.hypothesis, *one.from});
   return examine(run_->mission(), run_->layout(), run_->solution().knots, run_->hypotheses(),
-                 {.draws = draws, .seed = options_.seed, .counts = counts});
+                 {.draws = draws, .seed = options_.seed, .counts = counts, .started = std::move(started)});
 }
 
 void Search::add_draws(Examination& examination) {
@@ -182,6 +179,14 @@ void Search::give_up(std::size_t index) {
   noise_is_behind_ = true;
 }
 
+void Search::forget_what_vanished() {
+  for (std::size_t i = taken_.size(); i-- > 0;) {
+    // Sine and cosine of an oscillation belong together.
+    const bool is_part_of_a_line = result_.findings[i].hypothesis.effect->axes.size() == 2;
+    if (std::abs(taken_[i].value) < kNothing * sd(i) && !is_part_of_a_line) give_up(i);
+  }
+}
+
 void Search::model_noise(MissionInput& input) const {
   if (noise_) {
     input.setup.model = estimate::adjusted(input.setup.model, noise_->fit.adjustment);
@@ -195,57 +200,35 @@ void Search::run_current() {
   ++result_.runs;
 }
 
-std::vector<Eigen::Index> Search::of_whole_mission() const {
-  std::vector<Eigen::Index> indices;
-  for (const Taken& one : taken_)
-    if (!one.from) indices.push_back(one.hypothesis);
-  return indices;
+std::vector<Eigen::Index> rows_of(const std::vector<Taken>& taken, Eigen::Index hypotheses) {
+  std::vector<Eigen::Index> rows;
+  for (const Taken& one : taken) rows.push_back(one.from ? hypotheses++ : one.hypothesis);
+  return rows;
 }
 
 Movement movement(const Examination& e, const std::vector<Taken>& taken) {
-  std::vector<Eigen::Index> whole;
-  for (const Taken& one : taken)
-    if (!one.from) whole.push_back(one.hypothesis);
-  Eigen::VectorXd by, sd;
-  if (!whole.empty()) {
-    const Eigen::MatrixXd information = e.information(whole, whole);
-    const Eigen::VectorXd scale = information.diagonal().cwiseSqrt().cwiseInverse();
-    const Eigen::MatrixXd covariance =
-        scale.asDiagonal() *
-        (scale.asDiagonal() * information * scale.asDiagonal()).ldlt().solve(Eigen::MatrixXd(scale.asDiagonal()));
-    by = covariance * Eigen::VectorXd(e.score(whole));
-    sd = covariance.diagonal().cwiseSqrt();
-  }
-  Movement result;
-  Eigen::Index next = 0;
-  for (const Taken& one : taken) {
-    std::pair<double, double> move{0.0, 0.0};
-    if (!one.from) {
-      move = {by(next), sd(next)};
-      ++next;
-    } else if (const auto at = at_onset(e, one)) {
-      move = *at;
-    }
-    result.by.push_back(move.first);
-    result.sd.push_back(move.second);
-  }
-  return result;
+  if (taken.empty()) return {};
+  const std::vector<Eigen::Index> rows = rows_of(taken, e.score.size() - static_cast<Eigen::Index>(e.started.size()));
+  const Eigen::MatrixXd covariance = covariance_of(e.information(rows, rows));
+  return {covariance * Eigen::VectorXd(e.score(rows)), covariance.diagonal().cwiseSqrt()};
+}
+
+Movement Search::move_all(const Examination& e) {
+  Movement moved = movement(e, taken_);
+  for (std::size_t i = 0; i < taken_.size(); ++i) taken_[i].value += moved.by(static_cast<Eigen::Index>(i));
+  return moved;
 }
 
 double Search::follow(const Examination& e) {
-  const Movement moved = movement(e, taken_);
-  const auto deviation = [&](std::size_t i) { return moved.sd[i] > 0.0 ? std::abs(moved.by[i]) / moved.sd[i] : 0.0; };
-  // What begins at some time is not estimated together with the others: where two look alike each would take all of what is
-  // left. So the one that is farthest off moves by itself, or all that last the mission.
-  std::optional<std::size_t> farthest;
+  const Movement moved = move_all(e);
+  double farthest = 0.0;
   for (std::size_t i = 0; i < taken_.size(); ++i) {
-    if (moved.sd[i] > 0.0) result_.findings[i].sd = moved.sd[i];
-    if (!farthest || deviation(i) > deviation(*farthest)) farthest = i;
+    const auto row = static_cast<Eigen::Index>(i);
+    if (!(moved.sd(row) > 0.0)) continue;
+    result_.findings[i].sd = moved.sd(row);
+    farthest = std::max(farthest, std::abs(moved.by(row)) / moved.sd(row));
   }
-  if (!farthest) return 0.0;
-  for (std::size_t i = 0; i < taken_.size(); ++i)
-    if (i == *farthest || (!taken_[i].from && !taken_[*farthest].from)) taken_[i].value += moved.by[i];
-  return deviation(*farthest);
+  return farthest;
 }
 
 }  // namespace coast::diagnose

@@ -15,16 +15,25 @@ namespace coast::diagnose {
 struct Candidate {
   Suspicion suspicion;
   std::optional<double> by_runs;  ///< gain in log-likelihood, where runs were made
+  double freed = 0.0;             ///< what those cost that are nothing beside it
   /// With the gain of runs for that of the scores, and the price of what is implausible as it is.
-  [[nodiscard]] double log_bayes() const {
-    return suspicion.log_bayes + (by_runs ? *by_runs - 0.5 * suspicion.likelihood_ratio : 0.0);
-  }
+  [[nodiscard]] double log_bayes() const { return by_runs ? *by_runs - suspicion.price() + freed : suspicion.log_bayes; }
 };
 struct Candidates {
   std::vector<Candidate> all;  ///< the likeliest first
   double gain = 0.0;           ///< largest in log-likelihood, as far as known
   double evidence = 0.0;       ///< likewise, less what their sizes and onsets and the choice among effects cost
 };
+
+/// Where an examination has what was taken. @param hypotheses  how many there are
+[[nodiscard]] std::vector<Eigen::Index> rows_of(const std::vector<Taken>& taken, Eigen::Index hypotheses);
+
+/// By how much the values that were taken move by what a run without them still shows, and their standard deviations.
+struct Movement {
+  Eigen::VectorXd by, sd;
+};
+/// @param e  in which those that begin at some time have started
+[[nodiscard]] Movement movement(const Examination& e, const std::vector<Taken>& taken);
 
 /// What is taken where both explain the same. A random effect stands for two mean effects as well as for one, and beats each by
 /// itself; mean effects by the dozen stand for noise that lasts. Which it is shows in the end (Search::evidence).
@@ -54,10 +63,6 @@ class Search {
   /// @param log_odds  by which this explanation is the likelier one
   void tell_of(const Search& other, double log_odds);
   [[nodiscard]] double sd(std::size_t index) const { return result_.findings[index].sd; }
-  /// Sine and cosine of an oscillation belong together.
-  [[nodiscard]] bool is_part_of_a_line(std::size_t index) const {
-    return result_.findings[index].hypothesis.effect->axes.size() == 2;
-  }
   /// A line or a relation that no catalogue has.
   [[nodiscard]] bool is_suggested(const Effect& effect) const {
     return std::ranges::find(suggested_, &effect, &EffectPtr::get) != suggested_.end();
@@ -71,6 +76,8 @@ class Search {
   /// Every effect of the catalogue is put to the test once more beside all the others: is it needed, and is it this one?
   /// @return  whether another took its place, or none
   bool review();
+  /// What was taken for a share of another effect, and is nothing now that this one is known better.
+  void forget_what_vanished();
   void set_held_out(std::size_t index, double gain) { result_.findings[index].held_out_gain = gain; }
 
  private:
@@ -99,8 +106,8 @@ class Search {
   bool take_noise(const Examination& examination, double form_gain);
   /// Of what is stated, from the last fit on; none where chance explains the difference.
   void fit_noise();
-  /// What was taken since the last fit may be what noise stood for. Once nothing else is left to be done: it costs a hundred
-  /// runs. @return  whether that may show more
+  /// What was taken since the last fit may be what noise stood for. Once nothing else is left to be done, or where that was
+  /// much: it costs a hundred runs. @return  whether that may show more
   bool fit_noise_again();
   /// The likeliest random effect of an axis, and on the same axis the others, whose gains are set against each other.
   /// @param to_beat  gain of another way to model noise
@@ -112,10 +119,12 @@ class Search {
   // Mean effects: of the catalogue, and such that the recording suggests.
   /// The likeliest mean effects of the catalogue that chance does not explain.
   [[nodiscard]] Candidates candidates() const;
-  /// What runs without the effect gain, the better of its first estimate and the next: scores are linear about nothing there,
-  /// and of a large effect tell tens of percent too little or too much.
-  [[nodiscard]] double gain_by_runs(const Suspicion& s);
+  /// Tells a candidate what runs without it gain, the better of its first estimate and the next: scores are linear about
+  /// nothing there, and of a large effect tell tens of percent too little or too much.
+  void run_without(Candidate& candidate);
   void run_candidates();
+  /// As far as this step made runs without it.
+  [[nodiscard]] std::optional<double> gained_by_runs(const Suspicion& s) const;
   /// Whether something else explains more than every candidate, by runs of these where their scores leave it open.
   [[nodiscard]] bool beats_candidates(double gain);
   /// Whether it is also the likelier explanation, with all that choosing costs.
@@ -128,25 +137,32 @@ class Search {
   /// What was taken already stands among the candidates with what it is known to gain, which is more than its score tells where
   /// nothing is linear.
   void reconsider(const Taken& one, double gain);
+  /// The last of what was taken is taken out and put to the test again. @return  whether it came back
+  bool last_is_confirmed();
   /// The likeliest candidate, by runs where there are several.
   [[nodiscard]] Suspicion winner();
   /// A line or a relation that no catalogue has, where chance does not explain it.
   [[nodiscard]] std::optional<Proposal> likeliest_form(const Examination& examination) const;
   [[nodiscard]] bool was_refused(const Suspicion& s) const;
   [[nodiscard]] bool was_refused(const Proposal& form) const;
-  /// Takes an effect and runs without it. Where the mission is not linear over the effect's size the first estimate is too
-  /// large: it is halved until the likelihood rises. One that never does so is refused until another was taken.
+  /// Takes an effect and runs without it, and again with all values moved. Where the mission is not linear over the effect's
+  /// size the first estimate is too large: it is halved until the likelihood rises. One that never does so is refused until
+  /// another was taken.
   /// @return  whether it was taken
   bool makes_likelier(const Suspicion& s);
   /// Its coefficients are found together with those that are taken already. Refused where it does not explain more than the
   /// likeliest effect that has a name.
   void try_out(const Proposal& form);
+  /// Whether it still explains more than everything that has a name, which else takes its place.
+  /// @param gain  in log-likelihood of what was taken out just now
+  bool form_is_confirmed(const Taken& form, const Finding& finding, double gain);
   /// The likeliest frequency near that of a line, which the periodogram knows to a fraction of its width.
   [[nodiscard]] EffectPtr refined(const EffectPtr& line);
   void take(const Suspicion& s);
   [[nodiscard]] Alternative alternative(const Suspicion& s, double log_odds) const;
-  [[nodiscard]] std::vector<Eigen::Index> of_whole_mission() const;
-  /// Coefficients taken follow what the run without them still shows. @return  by how many sd the farthest moved
+  /// Coefficients taken follow what the run without them still shows, all together.
+  Movement move_all(const Examination& e);
+  /// Likewise, with the sd of what was found. @return  by how many of these the farthest moved
   double follow(const Examination& e);
 
   // For people (search_result.cpp).
@@ -178,6 +194,7 @@ class Search {
   std::optional<estimate::NoiseFit> last_fit_;
   bool noise_tried_ = false;
   bool noise_is_behind_ = false;  ///< something was taken or given up since it was fitted
+  double explained_ = 0.0;        ///< log-likelihood by what was taken since
   std::vector<EffectPtr> suggested_;
   std::vector<EffectPtr> refused_forms_;  ///< for good
   std::vector<AddedNoise> added_;
@@ -186,12 +203,6 @@ class Search {
   std::vector<NoiseFinding> random_effects_;
   Diagnosis result_;
 };
-
-/// By how much the values that were taken move by what a run without them still shows, and their standard deviations.
-struct Movement {
-  std::vector<double> by, sd;
-};
-[[nodiscard]] Movement movement(const Examination& e, const std::vector<Taken>& taken);
 
 [[nodiscard]] Alternative alternative(const FittedEffect& fit, double log_odds);
 /// Alternatives are told where the data alone, or with what is plausible, hold them for more than a thousandth as likely, by
@@ -205,6 +216,7 @@ struct Movement {
   return {static_cast<char>('x' + axis)};
 }
 
+inline constexpr double kNothing = 2.0;  // sd
 inline constexpr double kLogOdds = 7.0;  // of alternatives that are told: a thousandth as likely
 // Of the false alarms that are allowed the catalogue has what these leave.
 inline constexpr double kNoiseFalseAlarm = 0.01;  // random effects

@@ -26,7 +26,7 @@ Candidates Search::candidates() const {
   Candidates result;
   for (const Suspicion& s : suspicions_.all) {
     if (was_refused(s) || !(s.p_value < of_catalogue())) continue;
-    result.all.push_back({s, {}});
+    result.all.push_back({.suspicion = s, .by_runs = {}});
   }
   if (result.all.empty()) return result;
   for (const Suspicion& s : suspicions_.all) {
@@ -42,29 +42,32 @@ Candidates Search::candidates() const {
   return result;
 }
 
-double Search::gain_by_runs(const Suspicion& s) {
+void Search::run_without(Candidate& candidate) {
+  const Suspicion& s = candidate.suspicion;
   const double before = run_->log_likelihood();
+  const double choice = log_choices();
   const std::vector<Taken> taken = taken_;
   const MissionInput input = current_;
   std::unique_ptr<MissionRun> start = std::move(run_);
   taken_.push_back({s.hypothesis, s.from, {}, s.estimate});
   double best = likelihood_from(*start);
   if (run_ != nullptr) {
-    const Movement moved = movement(examined({}, 0), taken_);
+    const Movement moved = move_all(examined({}, 0));
     const std::unique_ptr<MissionRun> first = std::move(run_);
-    for (std::size_t i = 0; i < taken_.size(); ++i)
-      if (i + 1 == taken_.size() || (!taken_[i].from && !s.from)) taken_[i].value += moved.by[i];
+    for (std::size_t i = 0; i < taken.size(); ++i)
+      if (std::abs(taken_[i].value) < kNothing * moved.sd(static_cast<Eigen::Index>(i)))
+        candidate.freed += result_.findings[i].price + choice;
     best = std::max(best, likelihood_from(*first));
   }
+  candidate.by_runs = best - before;
   taken_ = taken;
   current_ = input;
   run_ = std::move(start);
-  return best - before;
 }
 
 void Search::run_candidates() {
   for (Candidate& c : candidates_.all) {
-    if (!c.by_runs) c.by_runs = gain_by_runs(c.suspicion);
+    if (!c.by_runs) run_without(c);
     candidates_.gain = std::max(candidates_.gain, *c.by_runs);
     candidates_.evidence = std::max(candidates_.evidence, c.log_bayes() - log_choices());
   }
@@ -88,14 +91,26 @@ Suspicion Search::winner() {
 bool Search::makes_likelier(const Suspicion& s) {
   constexpr int kHalvings = 4;
   const double before = run_->log_likelihood();
+  const std::vector<Taken> others = taken_;
   take(s);
   const std::unique_ptr<MissionRun> start = std::move(run_);
-  for (int i = 0; i <= kHalvings; ++i, taken_.back().value *= 0.5) {
-    const double gained = likelihood_from(*start) - before;
-    if (gained < 0.5 * result_.threshold) continue;
-    result_.findings.back().delta_log_likelihood = gained;
-    refused_.clear();
-    return true;
+  const auto gains_enough = [&](const MissionRun& last) {
+    result_.findings.back().delta_log_likelihood = likelihood_from(last) - before;
+    return result_.findings.back().delta_log_likelihood >= 0.5 * result_.threshold;
+  };
+  for (double value = s.estimate, i = 0; i <= kHalvings; ++i, value *= 0.5) {
+    taken_.back().value = value;
+    bool is_taken = gains_enough(*start);
+    if (!is_taken && run_ != nullptr) {
+      move_all(examined({}, 0));
+      const std::unique_ptr<MissionRun> first = std::move(run_);
+      is_taken = gains_enough(*first);
+    }
+    if (is_taken) {
+      refused_.clear();
+      return true;
+    }
+    std::ranges::copy(others, taken_.begin());
   }
   taken_.pop_back();
   result_.findings.pop_back();
@@ -134,7 +149,7 @@ void Search::reconsider(const Taken& one, double gain) {
   if (at == candidates_.all.end()) {
     const auto suspicion = std::ranges::find(suspicions_.all, one.hypothesis, &Suspicion::hypothesis);
     if (suspicion == suspicions_.all.end() || gain < 0.5 * result_.threshold) return;
-    at = candidates_.all.insert(candidates_.all.end(), {*suspicion, {}});
+    at = candidates_.all.insert(candidates_.all.end(), {.suspicion = *suspicion, .by_runs = {}});
   }
   at->by_runs = gain;
 }
@@ -144,39 +159,53 @@ bool Search::review() {
   for (std::size_t left = taken_.size(); left > 0; --left) {
     std::rotate(taken_.begin(), taken_.begin() + 1, taken_.end());
     std::rotate(result_.findings.begin(), result_.findings.begin() + 1, result_.findings.end());
-    const Taken one = taken_.back();
-    if (is_suggested(*run_->hypotheses()[one.hypothesis].effect)) continue;
-    const double with_it = run_->log_likelihood();
-    taken_.pop_back();
-    result_.findings.pop_back();
-    run_again();
-    const LargestByChance chance = suspicions_.chance;
-    suspicions_ = suspicions(examined({}, 0), run_->hypotheses(), of_whole_mission());
-    suspicions_.judge(chance);
-    candidates_ = candidates();
-    const double gain = with_it - run_->log_likelihood();
-    reconsider(one, gain);
-    if (candidates_.all.empty()) {
-      changed = true;
-      continue;
-    }
-    Suspicion best = winner();
-    if (best.hypothesis == one.hypothesis) {
-      std::tie(best.from, best.estimate) = std::tie(one.from, one.value);
-      if (gain > kNotLinear * 0.5 * best.likelihood_ratio) {
-        best.log_bayes += gain - 0.5 * best.likelihood_ratio;
-        best.likelihood_ratio = 2.0 * gain;
-      }
-    }
-    if (!makes_likelier(best) || best.hypothesis != one.hypothesis) changed = true;
+    if (last_is_confirmed()) continue;
+    changed = true;
+    settle();
+    forget_what_vanished();
+    left = std::min(left, taken_.size() + 1);
   }
   if (changed) noise_is_behind_ = true;
   return changed;
 }
 
+bool Search::last_is_confirmed() {
+  const Taken one = taken_.back();
+  const Finding finding = result_.findings.back();
+  const bool has_name = !is_suggested(*finding.hypothesis.effect);
+  if (!has_name && finding.hypothesis.effect->relation.empty()) return true;  // nothing that has a name looks like a line
+  const double with_it = run_->log_likelihood();
+  taken_.pop_back();
+  result_.findings.pop_back();
+  run_again();
+  const LargestByChance chance = suspicions_.chance;
+  suspicions_ = suspicions(examined({}, 0), run_->hypotheses(), rows_of(taken_, run_->hypotheses().size()));
+  suspicions_.judge(chance);
+  if (!has_name) refused_.push_back(one.hypothesis);  // among those that have one
+  candidates_ = candidates();
+  const double gain = with_it - run_->log_likelihood();
+  if (!has_name) return form_is_confirmed(one, finding, gain);
+  reconsider(one, gain);
+  if (candidates_.all.empty()) return false;
+  Suspicion best = winner();
+  if (best.hypothesis == one.hypothesis) {
+    std::tie(best.from, best.estimate) = std::tie(one.from, one.value);
+    if (gain > kNotLinear * 0.5 * best.likelihood_ratio) {
+      best.log_bayes += gain - 0.5 * best.likelihood_ratio;
+      best.likelihood_ratio = 2.0 * gain;
+    }
+  }
+  return makes_likelier(best) && best.hypothesis == one.hypothesis;
+}
+
 std::optional<double> log_odds_told(double by_data, double by_evidence) {
   if (std::min(by_data, by_evidence) >= kLogOdds) return std::nullopt;
   return std::max(by_data, by_evidence);
+}
+
+std::optional<double> Search::gained_by_runs(const Suspicion& s) const {
+  const auto at = std::ranges::find(candidates_.all, s.hypothesis, [](const Candidate& c) { return c.suspicion.hypothesis; });
+  return at != candidates_.all.end() ? at->by_runs : std::nullopt;
 }
 
 Alternative Search::alternative(const Suspicion& s, double log_odds) const {
@@ -194,13 +223,15 @@ void Search::take(const Suspicion& s) {
                   .value = s.estimate,
                   .sd = s.sd,
                   .p_value = s.p_value,
-                  .price = 0.5 * s.likelihood_ratio - s.log_bayes,
+                  .price = s.price(),
                   .held_out_gain = {},
                   .alternatives = {},
                   .stability = {}};
   for (const Suspicion& other : suspicions_.all) {
     if (other.hypothesis == s.hypothesis) continue;
-    if (const auto odds = log_odds_told(0.5 * (s.likelihood_ratio - other.likelihood_ratio), s.log_bayes - other.log_bayes))
+    const double by_data = gained_by_runs(s) && gained_by_runs(other) ? *gained_by_runs(s) - *gained_by_runs(other)
+                                                                      : 0.5 * (s.likelihood_ratio - other.likelihood_ratio);
+    if (const auto odds = log_odds_told(by_data, by_data + other.price() - s.price()))
       finding.alternatives.push_back(alternative(other, *odds));
   }
   for (const FittedEffect& fit : beaten_)

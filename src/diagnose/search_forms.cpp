@@ -92,4 +92,15 @@ void Search::try_out(const Proposal& form) {
   run_from(*start);
 }
 
+bool Search::form_is_confirmed(const Taken& form, const Finding& finding, double gain) {
+  if (!candidates_.all.empty() && !beats_candidates(gain - finding.price) && makes_likelier(winner())) {
+    refused_forms_.push_back(*std::ranges::find(suggested_, finding.hypothesis.effect, &EffectPtr::get));
+    return false;
+  }
+  taken_.push_back(form);
+  result_.findings.push_back(finding);
+  run_again();
+  return true;
+}
+
 }  // namespace coast::diagnose

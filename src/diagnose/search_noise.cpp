@@ -31,12 +31,14 @@ void Search::look_at_samples() {
       const std::optional<double> found = effect.find(axis_series(input_, effect.site, axis));
       if (!found) continue;
       const double before = run_->log_likelihood();
-      MissionInput stated = input_;
-      effect.model(input_, effect.site, axis, *found);
+      MissionInput modelled = input_;
+      model_noise(modelled);  // noise is raised beside what was fitted
+      effect.model(modelled, effect.site, axis, *found);
+      std::swap(input_.imu, modelled.imu);
       run_again();
       const double gained = run_->log_likelihood() - before;
       if (gained < kLeastOfSamples) {
-        input_ = std::move(stated);
+        std::swap(input_.imu, modelled.imu);
         run_again();
         continue;
       }
@@ -72,6 +74,7 @@ bool Search::take_noise(const Examination& examination, double form_gain) {
 
 void Search::fit_noise() {
   noise_is_behind_ = false;
+  explained_ = 0.0;
   noise_ = fitted_noise(run_->prepared(), last_fit_, progress_);
   if (!noise_) return;
   last_fit_ = noise_->fit;
@@ -82,10 +85,14 @@ bool Search::fit_noise_again() {
   if (!std::exchange(noise_is_behind_, false)) return false;
   const bool was_tried = std::exchange(noise_tried_, false);
   if (!noise_) return was_tried;
-  noise_.reset();
+  const double before = run_->log_likelihood();
+  const FittedNoise last = *std::exchange(noise_, std::nullopt);
   run_again();
   fit_noise();
-  return true;
+  if (run_->log_likelihood() > before) return true;
+  noise_ = last;  // a part of a long mission is not all of it
+  run_again();
+  return false;
 }
 
 bool Search::take_random_effect(const Examination& examination, double to_beat) {

@@ -60,9 +60,10 @@ Verification verify(const Search& search) {
     std::vector<Taken> values = search.taken();
     const Movement moved = movement(examination, values);
     for (std::size_t i = 0; i < values.size(); ++i) {
-      // An entry and its exit are not estimated together: blocks that lie on one side of both give each what is the other's.
-      const double most = values[i].from ? kFarthest * search.sd(i) : std::abs(moved.by[i]);
-      values[i].value += std::clamp(moved.by[i], -most, most);
+      // Of what begins within the blocks that are held out the others know next to nothing.
+      const double by = moved.by(static_cast<Eigen::Index>(i));
+      const double most = values[i].from ? kFarthest * search.sd(i) : std::abs(by);
+      values[i].value += std::clamp(by, -most, most);
     }
     const std::vector<double> all = log_likelihoods(search.with_values(values), blocks);
     for (std::size_t b = fold; b < blocks.count(); b += 2) with[b] = all[b];

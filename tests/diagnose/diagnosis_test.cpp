@@ -8,6 +8,7 @@
 
 #include <random>
 
+#include "coast/geo/earth.hpp"
 #include "diagnose/concealed.hpp"
 
 namespace coast {
@@ -51,6 +52,24 @@ TEST(Diagnosis, AWrongLeverArmIsFoundAndItsSizeToo) {
   EXPECT_GT(f->delta_log_likelihood, 100.0);
   EXPECT_GT(d.after.log_likelihood_per_epoch, d.before.log_likelihood_per_epoch);
   EXPECT_NEAR(d.modelled.setup.lever_arm_b.y(), -0.2, 4.0 * f->sd);
+}
+
+// A receiver that is wrong for three seconds while the antenna is not where it is said to be: the jump back by itself looks
+// like a slip of the antenna, and what comes after it too.
+TEST(Diagnosis, AWrongLeverArmIsNotASlipBehindAWrongFix) {
+  MissionInput input = test::honest_mission(14);
+  input.setup.lever_arm_b.y() += 0.15;
+  const geo::GpsTime begin = input.gnss.fixes.front().t + 60.0;
+  for (record::GnssFix& fix : input.gnss.fixes)
+    if (fix.t >= begin && fix.t < begin + 3.0)
+      fix.r_ea_e += geo::C_n_e(geo::geodetic_from_ecef(fix.r_ea_e)) * Eigen::Vector3d(0.1, -0.1, 0.0);
+  const Diagnosis d = diagnose::diagnose(input, kWithoutTwins, {});
+  const auto lever_arm =
+      std::ranges::find(d.findings, "lever_arm_error", [](const Finding& f) { return f.hypothesis.effect->name; });
+  ASSERT_NE(lever_arm, d.findings.end()) << names(d);
+  EXPECT_EQ(lever_arm->hypothesis.axis_name(), "y");
+  EXPECT_NEAR(lever_arm->value, -0.15, 4.0 * lever_arm->sd);
+  for (const Finding& f : d.findings) EXPECT_NE(f.hypothesis.effect->name, "antenna_mount_slip") << names(d);
 }
 
 TEST(Diagnosis, ATimeOffsetIsFound) {

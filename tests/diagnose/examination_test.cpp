@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include "coast/geo/earth.hpp"
 #include "coast/geo/units.hpp"
 #include "coast/noise/chi_square.hpp"
 #include "coast/study/solution.hpp"
@@ -32,13 +33,13 @@ class Examined {
         std::ranges::find_if(hypotheses_.all(), [&](const Hypothesis& h) { return h.effect->name == name && h.axis == axis; });
     return at - hypotheses_.all().begin();
   }
-  [[nodiscard]] Examination examine(Eigen::Index draws) const {
-    return diagnose::examine(mission_.mission(), solution_.filter->layout(), solution_.knots, hypotheses_, {.draws = draws});
+  [[nodiscard]] Examination examine(Eigen::Index draws, const std::vector<Examination::Started>& started = {}) const {
+    return diagnose::examine(mission_.mission(), solution_.filter->layout(), solution_.knots, hypotheses_,
+                             {.draws = draws, .started = started});
   }
-  /// Of a filter that knows of the effect, from the same start.
-  [[nodiscard]] double log_likelihood(Eigen::Index hypothesis, double value) const {
-    const Taken taken{.hypothesis = hypothesis, .from = {}, .to = {}, .value = value};
-    MissionInput with = without({taken}, input_, hypotheses_, path_, mission_.mission(), solution_.filter->layout());
+  /// Of a filter that knows of the effects, from the same start.
+  [[nodiscard]] double log_likelihood(const std::vector<Taken>& taken) const {
+    MissionInput with = without(taken, input_, hypotheses_, path_, mission_.mission(), solution_.filter->layout());
     const study::PreparedMission mission(std::move(with.imu), std::move(with.gnss), std::move(with.setup), {});
     const estimate::ForwardFilter filter(mission.mission(), mission.model(), mission.options());
     return filter.run(mission.start_state(filter), {}).log_likelihood;
@@ -79,10 +80,76 @@ TEST(Examination, ScoresAreSlopesOfTheLogLikelihood) {
                                    {"accel_scale_factor", 1}}) {
     const Eigen::Index i = examined.find(name, axis);
     const double sd = 1.0 / std::sqrt(e.information(i, i));
-    const double slope = examined.log_likelihood(i, 0.5 * sd) - examined.log_likelihood(i, -0.5 * sd);
+    const double slope = examined.log_likelihood({{.hypothesis = i, .value = 0.5 * sd}}) -
+                         examined.log_likelihood({{.hypothesis = i, .value = -0.5 * sd}});
     // The smoothed velocity has a little of the innovations in it too: 0.4 standard deviations here, where the filter's has 23.
     EXPECT_NEAR(e.score(i) * sd, slope, 0.5 + 0.03 * std::abs(slope)) << name << " " << axis;
   }
+}
+
+// Likewise of what has started, with its information: along a, log L = s a - I a^2 / 2, and between two at a time, by runs that
+// have both. A gap of the tags and a step of gyro z in the middle of the mission.
+TEST(Examination, WhatHasStartedIsSeenBesideTheOthers) {
+  const MissionInput input = test::honest_mission(13);
+  const Examined examined(input);
+  const geo::GpsTime middle = input.gnss.fixes[input.gnss.fixes.size() / 2].t + 0.5;
+  const std::vector<Examination::Started> started{{examined.find("imu_timestamp_gap", 0), middle},
+                                                  {examined.find("bias_step", 2), middle + 20.0}};
+  const Examination e = examined.examine(0, started);
+  const Eigen::Index n = examined.hypotheses().size();
+  ASSERT_EQ(e.score.size(), n + 2);
+  const auto at = [&](double a, double b) {
+    return examined.log_likelihood({{.hypothesis = started[0].hypothesis, .from = started[0].from, .value = a},
+                                    {.hypothesis = started[1].hypothesis, .from = started[1].from, .value = b}});
+  };
+  const Eigen::Vector2d sd = e.information.diagonal().tail<2>().cwiseSqrt().cwiseInverse();
+  const Eigen::Vector2d u = 2.0 * sd;
+  const double none = at(0.0, 0.0);
+  for (int i = 0; i < 2; ++i) {
+    const double up = at(i == 0 ? u(0) : 0.0, i == 1 ? u(1) : 0.0) - none;
+    const double down = at(i == 0 ? -u(0) : 0.0, i == 1 ? -u(1) : 0.0) - none;
+    // Two standard deviations away a quadratic has 2 of -log L; what the samples' grid shifts an onset by is of the order of 1
+    // %.
+    EXPECT_NEAR(e.score(n + i) * u(i), 0.5 * (up - down), 0.1 + 0.03 * std::abs(up - down)) << i;
+    EXPECT_NEAR(-(up + down) / 4.0, 1.0, 0.05) << i;
+  }
+  const double mixed = at(u(0), u(1)) - at(u(0), -u(1)) - at(-u(0), u(1)) + at(-u(0), -u(1));
+  EXPECT_NEAR(-mixed / (4.0 * u(0) * u(1)) * sd(0) * sd(1), e.information(n, n + 1) * sd(0) * sd(1), 0.02);
+  EXPECT_EQ(e.information.row(0).head(3), examined.examine(0).information.row(0).head(3));
+}
+
+// Of a jump of fixes every instant between two of them is as good. In the middle it stays between them when tags shift a
+// little.
+TEST(Suspicions, WhatOnlyFixesSeeBeginsInTheMiddleBetweenTwo) {
+  MissionInput input = test::honest_mission(15, 240.0);
+  input.setup.filter.gate_probability = 0.0;
+  std::vector<record::GnssFix>& fixes = input.gnss.fixes;
+  const std::size_t first = fixes.size() / 2;
+  const Eigen::Vector3d jump = geo::C_n_e(geo::geodetic_from_ecef(fixes.front().r_ea_e)) * Eigen::Vector3d(0.3, 0.0, 0.0);
+  for (std::size_t i = first; i < fixes.size(); ++i) fixes[i].r_ea_e += jump;
+  const Examined examined(input);
+  const std::vector<Suspicion> all = suspicions(examined.examine(20), examined.hypotheses(), {}).all;
+  const auto wrong = std::ranges::find(all, examined.find("gnss_wrong_fix", 0), &Suspicion::hypothesis);
+  ASSERT_NE(wrong, all.end());
+  EXPECT_NEAR(wrong->estimate, 0.3, 4.0 * wrong->sd);
+  const double interval = fixes[first].t - fixes[first - 1].t;
+  EXPECT_NEAR(*wrong->from - fixes[first - 1].t, 0.5 * interval, 1e-6);
+}
+
+TEST(CovarianceOf, IsTheInverseWhereThereIsOne) {
+  // Units as far apart as those of rates and distances.
+  const Eigen::Vector3d units(1e6, 1.0, 1e-4);
+  Eigen::Matrix3d correlated;
+  correlated << 1.0, 0.6, 0.1, 0.6, 1.0, -0.3, 0.1, -0.3, 1.0;
+  const Eigen::Matrix3d information = units.asDiagonal() * correlated * units.asDiagonal();
+  const Eigen::Matrix3d back = units.asDiagonal() * covariance_of(information) * units.asDiagonal();
+  EXPECT_LT((back * correlated - Eigen::Matrix3d::Identity()).norm(), 1e-12);
+}
+
+TEST(CovarianceOf, SharesWhatCannotBeToldApart) {
+  Eigen::Matrix2d same;
+  same << 4.0, 4.0, 4.0, 4.0;
+  EXPECT_LT((covariance_of(same) * Eigen::Vector2d(8.0, 8.0) - Eigen::Vector2d(1.0, 1.0)).norm(), 1e-12);
 }
 
 TEST(Examination, DrawsHoldWhereCovariancesDo) {

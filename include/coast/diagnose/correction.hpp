@@ -14,8 +14,8 @@ namespace coast::diagnose {
 /// A hypothesis taken for true, with its size.
 struct Taken {
   Eigen::Index hypothesis = 0;
-  std::optional<geo::GpsTime> from;  ///< the whole mission where absent
-  std::optional<geo::GpsTime> to;
+  std::optional<geo::GpsTime> from = {};  ///< the whole mission where absent
+  std::optional<geo::GpsTime> to = {};
   double value = 0.0;
   [[nodiscard]] bool holds(geo::GpsTime t) const { return (!from || t >= *from) && (!to || t < *to); }
 };

@@ -13,7 +13,15 @@ namespace coast::diagnose {
 /// Scores and information of the coefficients about zero, effect = coefficient times column:
 /// log-likelihood ratio = score' c - c' information c / 2.
 struct Examination {
-  /// Of effects that last the whole mission (of all hypotheses; rows of those that begin at some time mean: from its start).
+  /// Hypotheses of which it is asked what they do from some instant on.
+  struct Started {
+    Eigen::Index hypothesis = 0;
+    geo::GpsTime from;
+    bool operator==(const Started&) const = default;
+  };
+  std::vector<Started> started;
+  /// Of all hypotheses as effects of the whole mission (of those that begin at some time: from its start), and behind them of
+  /// those that have `started`, in their order.
   Eigen::VectorXd score;
   Eigen::MatrixXd information;
   Eigen::MatrixXd null_score;  ///< by draws of the innovations from their own covariance, a column each
@@ -30,7 +38,8 @@ struct Examination {
   Disturbances disturbances;
 
   /// Takes over what draws of another examination say, in place of own ones: they depend on covariances, and these hardly
-  /// on what was taken out. @return  whether covariances and hypotheses are those of the other; else nothing was taken
+  /// on what was taken out. @return  whether covariances, hypotheses and what has started are those of the other; else nothing
+  /// was taken
   bool take_draws_of(const Examination& other);
 };
 
@@ -39,6 +48,7 @@ struct ExaminationOptions {
   Eigen::Index draws_of_disturbances = 200;  ///< of these, as many are kept interval by interval
   std::uint64_t seed = 1;
   std::function<bool(geo::GpsTime)> counts = {};  ///< innovations at other instants say nothing; empty: all count
+  std::vector<Examination::Started> started = {};
 };
 
 /// @param knots  of a forward pass with the layout
@@ -56,6 +66,8 @@ struct Suspicion {
   double likelihood_ratio = 0.0;  ///< twice the logarithm
   double log_bayes = 0.0;         ///< of the effect with its plausible size against none
   double p_value = 1.0;           ///< that the largest of all is as large by chance
+  /// What its size and its onset cost of the gain in log-likelihood.
+  [[nodiscard]] double price() const { return 0.5 * likelihood_ratio - log_bayes; }
 };
 
 /// The distribution of the largest likelihood ratio of all hypotheses and instants where nothing is missing: that of the
@@ -72,13 +84,15 @@ struct LargestByChance {
 struct Suspicions {
   std::vector<Suspicion> all;  ///< by hypothesis; what cannot be seen at all is left out
   LargestByChance chance;
-  Eigen::MatrixXd correlation;  ///< of the whole-mission estimates with each other, all hypotheses; 1 or -1: the same
   /// By what chance does as it is known already, where there were no draws.
   void judge(const LargestByChance& by_chance);
 };
-/// @param taken  hypotheses of the whole mission that are estimated beside each one
+/// @param taken  rows of the examination that are estimated beside each one that lasts the mission
 [[nodiscard]] Suspicions suspicions(const Examination& examination, const Hypotheses& hypotheses,
                                     const std::vector<Eigen::Index>& taken);
+
+/// Inverse of an information matrix. What cannot be told apart shares what is found, evenly in standard deviations.
+[[nodiscard]] Eigen::MatrixXd covariance_of(const Eigen::MatrixXd& information);
 
 /// Logarithm of the ratio of the likelihoods of a coefficient c ~ Cauchy(0, plausible) and of c = 0 (Jeffreys, Theory of
 /// Probability, 3rd ed., section 5.2). Under a normal prior an effect of thirty times what is plausible would never be

@@ -7,11 +7,13 @@ namespace coast::diagnose {
 
 namespace {
 
-constexpr double kEqual = 1e-9;  // of the limit: what files leave
+constexpr double kEqual = 1e-9;     // of the limit: what files leave
+constexpr Eigen::Index kApart = 8;  // samples
 
 /// Samples [first, last] in a row stand at the limit.
 struct Episode {
   Eigen::Index first, last;
+  [[nodiscard]] Eigen::Index length() const { return last - first + 1; }
 };
 
 std::vector<Episode> episodes(const Eigen::ArrayXd& values, double limit) {
@@ -36,8 +38,8 @@ bool is_held(const Eigen::ArrayXd& values, double extreme, double white_sd) {
   Eigen::Index count = 0;
   Eigen::Index longest = 0;
   for (const Episode& e : held) {
-    count += e.last - e.first + 1;
-    longest = std::max(longest, e.last - e.first + 1);
+    count += e.length();
+    longest = std::max(longest, e.length());
   }
   if (count < kOften || longest < kInARow) return false;
   // Of rounded values the next step is as good as the limit itself.
@@ -57,43 +59,112 @@ std::optional<double> find_limit(const AxisSeries& series) {
   return {};
 }
 
-/// Slope of the line through the values of [from, to).
-double slope(const Eigen::ArrayXd& values, Eigen::Index from, Eigen::Index to) {
-  const Eigen::Index n = to - from;
-  if (n < 2) return 0.0;
-  const Eigen::ArrayXd x = Eigen::ArrayXd::LinSpaced(n, 0.0, static_cast<double>(n - 1)) - 0.5 * static_cast<double>(n - 1);
-  return (x * values.segment(from, n)).sum() / x.square().sum();
+/// Slope of the line through some values, a sample, and its variance by what the line leaves.
+struct Slope {
+  double value = 0.0;
+  double variance = 0.0;
+};
+Slope slope_of(const Eigen::ArrayXd& values) {
+  const auto n = static_cast<double>(values.size());
+  if (values.size() < 3) return {};
+  const Eigen::ArrayXd x = Eigen::ArrayXd::LinSpaced(values.size(), -0.5 * (n - 1.0), 0.5 * (n - 1.0));
+  const double squares = x.square().sum();
+  const double slope = (x * values).sum() / squares;
+  const double rest = (values - values.mean() - slope * x).square().sum() / (n - 2.0);
+  return {slope, rest / squares};
 }
 
-/// Beyond the limit the signal is taken for the cubic that goes on with the slopes on either side; of its mean height a third
-/// is the uncertainty of all of it together.
+/// How steeply the limit is reached. @param away  values from the limit on  @param longest  stretch in which the signal is
+/// straight
+Slope upward(const Eigen::ArrayXd& away, Eigen::Index longest) {
+  constexpr double kSeen = 5.0;  // sd: as few values as tell the slope, for it to be that at the limit
+  Slope slope;
+  for (Eigen::Index n = kApart;; n *= 2) {
+    const bool all = n >= std::min(longest, away.size());
+    slope = slope_of(away.head(std::min({n, longest, away.size()})));
+    if (all || slope.value * slope.value > kSeen * kSeen * slope.variance) break;
+  }
+  slope.value = std::max(0.0, -slope.value);
+  return slope;
+}
+
+/// An excursion beyond the limit. On the way up and down noise crosses the limit more than once: episodes close together.
+struct Excursion {
+  Eigen::Index first, last;
+  Slope up, down;  ///< toward the limit on either side, not below zero
+  [[nodiscard]] double steps() const { return static_cast<double>(last - first + 2); }
+  /// The cubic between the samples on either side that goes on with their slopes.
+  [[nodiscard]] double height(Eigen::Index i) const {
+    const double s = static_cast<double>(i - first + 1) / steps();
+    return steps() * (up.value * s * (1.0 - s) * (1.0 - s) + down.value * s * s * (1.0 - s));
+  }
+  [[nodiscard]] double mean() const { return steps() * (up.value + down.value) / 12.0; }
+  /// Of its mean height: a third that its shape is not this one, and what the slopes are known to.
+  [[nodiscard]] double variance() const {
+    constexpr double kShape = 0.33;
+    return std::pow(kShape * mean(), 2) + std::pow(steps() / 12.0, 2) * (up.variance + down.variance);
+  }
+};
+
+/// Where the signal itself crosses the limit: from there to there half of the samples around are held.
+Excursion between_crossings(const Eigen::Array<bool, Eigen::Dynamic, 1>& held, Eigen::Index first, Eigen::Index last) {
+  const Eigen::Index reach = std::min(kApart, (last - first + 1) / 4);
+  const auto is_beyond = [&](Eigen::Index i) {
+    const Eigen::Index from = std::max<Eigen::Index>(0, i - reach);
+    const Eigen::Index count = std::min(held.size(), i + reach + 1) - from;
+    return 2 * held.segment(from, count).count() >= count;
+  };
+  Excursion e{first, last, {}, {}};
+  while (e.first < e.last && !is_beyond(e.first)) ++e.first;
+  while (e.last > e.first && !is_beyond(e.last)) --e.last;
+  return e;
+}
+
+/// @param toward  values with the sign that makes the limit the upper one
+std::vector<Excursion> excursions(const Eigen::ArrayXd& toward, double limit) {
+  const Eigen::Array<bool, Eigen::Dynamic, 1> held = toward >= limit * (1.0 - kEqual);
+  std::vector<Episode> together;
+  for (const Episode& e : episodes(toward, limit)) {
+    const auto apart = [&](const Episode& before) {
+      return e.first - before.last > std::max({kApart, before.length() / 4, e.length() / 4});
+    };
+    if (together.empty() || apart(together.back()))
+      together.push_back(e);
+    else
+      together.back().last = e.last;
+  }
+  std::vector<Excursion> result;
+  for (const Episode& e : together) result.push_back(between_crossings(held, e.first, e.last));
+  for (std::size_t k = 0; k < result.size(); ++k) {
+    Excursion& e = result[k];
+    const Eigen::Index longest = std::max(kApart, (e.last - e.first + 1) / 4);
+    const Eigen::Index before = e.first - (k > 0 ? result[k - 1].last + 1 : 0);
+    const Eigen::Index behind = (k + 1 < result.size() ? result[k + 1].first : toward.size()) - e.last - 1;
+    e.up = upward(toward.segment(e.first - before, before).reverse(), longest);
+    e.down = upward(toward.segment(e.last + 1, behind), longest);
+  }
+  return result;
+}
+
+/// Beyond the limit the signal is taken for a cubic; what that may be wrong by, all of it together, is added as noise.
 void mend(MissionInput& input, Site site, int axis, double limit) {
-  constexpr Eigen::Index kSlope = 8;  // samples
-  constexpr double kUncertain = 0.33;
   const AxisSeries series = axis_series(input, site, axis);
   const Eigen::Vector3d direction_b = input.setup.C_s_b.col(axis);
   std::vector<RaisedNoise> noise;
   for (const double side : {std::abs(limit), -std::abs(limit)}) {
     if (side != limit && !is_held(series.values, side, series.white_sd)) continue;
     const double sign = side > 0.0 ? 1.0 : -1.0;
-    for (const Episode& e : episodes(series.values, side)) {
-      const double up = std::max(0.0, sign * slope(series.values, std::max<Eigen::Index>(0, e.first - kSlope), e.first));
-      const double down =
-          std::max(0.0, -sign * slope(series.values, e.last + 1, std::min(series.values.size(), e.last + 1 + kSlope)));
-      const auto length = static_cast<double>(e.last - e.first + 2);  // steps between the samples on either side
-      double sum = 0.0;
+    const Eigen::ArrayXd toward = sign * series.values;
+    for (const Excursion& e : excursions(toward, std::abs(limit))) {
       for (Eigen::Index i = e.first; i <= e.last; ++i) {
-        const double s = static_cast<double>(i - e.first + 1) / length;
-        const double height = length * (up * s * (1.0 - s) * (1.0 - s) + down * s * s * (1.0 - s));
+        if (toward(i) < std::abs(limit) * (1.0 - kEqual)) continue;
         record::ImuSample& sample = input.imu.samples[static_cast<std::size_t>(i)];
-        (site == Site::kGyro ? sample.dtheta : sample.dv) += sign * height * sample.dt * direction_b;
-        sum += height;
+        (site == Site::kGyro ? sample.dtheta : sample.dv) += sign * e.height(i) * sample.dt * direction_b;
       }
-      const double mean = sum / static_cast<double>(e.last - e.first + 1);
       const record::ImuSample& first = input.imu.samples[static_cast<std::size_t>(e.first)];
-      const geo::GpsTime to = input.imu.samples[static_cast<std::size_t>(e.last)].t;
       const geo::GpsTime from = first.t - first.dt;
-      if (mean > 0.0) noise.push_back({from, to, kUncertain * kUncertain * mean * mean * (to - from)});
+      const geo::GpsTime to = input.imu.samples[static_cast<std::size_t>(e.last)].t;
+      if (e.variance() > 0.0) noise.push_back({from, to, e.variance() * (to - from)});
     }
   }
   std::ranges::sort(noise, {}, &RaisedNoise::from);
