@@ -107,7 +107,7 @@ class Search {
   /// Of what is stated, from the last fit on; none where chance explains the difference.
   void fit_noise();
   /// What was taken since the last fit may be what noise stood for. Once nothing else is left to be done, or where that was
-  /// much: it costs a hundred runs. @return  whether that may show more
+  /// much: it costs a hundred runs. Kept where the mission is likelier by it. @return  whether that may show more
   bool fit_noise_again();
   /// The likeliest random effect of an axis, and on the same axis the others, whose gains are set against each other.
   /// @param to_beat  gain of another way to model noise
@@ -216,7 +216,7 @@ class Search {
   return {static_cast<char>('x' + axis)};
 }
 
-inline constexpr double kNothing = 2.0;  // sd
+inline constexpr double kNothing = 2.0;  // sd, below which a size is nothing beside the others
 inline constexpr double kLogOdds = 7.0;  // of alternatives that are told: a thousandth as likely
 // Of the false alarms that are allowed the catalogue has what these leave.
 inline constexpr double kNoiseFalseAlarm = 0.01;  // random effects

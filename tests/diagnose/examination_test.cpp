@@ -115,7 +115,9 @@ TEST(Examination, WhatHasStartedIsSeenBesideTheOthers) {
   }
   const double mixed = at(u(0), u(1)) - at(u(0), -u(1)) - at(-u(0), u(1)) + at(-u(0), -u(1));
   EXPECT_NEAR(-mixed / (4.0 * u(0) * u(1)) * sd(0) * sd(1), e.information(n, n + 1) * sd(0) * sd(1), 0.02);
-  EXPECT_EQ(e.information.row(0).head(3), examined.examine(0).information.row(0).head(3));
+  // The others are what they are without: but for the rounding of sums, which may be grouped otherwise.
+  const Eigen::MatrixXd without = examined.examine(0).information;
+  EXPECT_LT((e.information.topLeftCorner(n, n) - without).norm(), 1e-9 * without.norm());
 }
 
 // Of a jump of fixes every instant between two of them is as good. In the middle it stays between them when tags shift a

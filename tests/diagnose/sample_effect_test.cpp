@@ -98,8 +98,8 @@ TEST(SampleEffects, WhatASaturatedSensorMissedIsMended) {
 }
 
 // Turns of 6 s on a car that shakes: the noise crosses the limit on the way up and down, and in eight samples it hides the
-// slope. What is left of the turned angle is to be what the added noise says it is: of twelve turns no rms beyond twice that (a
-// third more than chi-square has at 0.1 %), none under a tenth.
+// slope. What is left of the turned angle is to be what the added noise says it is: of twelve turns the rms is within twice
+// that (of chi-square 1.66 times is exceeded at 0.1 %), and above a tenth; and half of the rms that was lost is to come back.
 TEST(SampleEffects, TurnsOnAShakingCarAreMendedAndTheirUncertaintyIsTold) {
   MissionInput input;
   input.imu.rate_hz = 100.0;
