@@ -95,8 +95,16 @@ std::string explanation(const diagnose::NoiseFinding& f) {
   return text + other_readings(f.alternatives, f.separating_manoeuvre);
 }
 
-bool is_accepted(const diagnose::Diagnosis& d) {
-  return (d.findings.empty() && d.noise.empty()) || d.after.log_likelihood_per_epoch > d.before.log_likelihood_per_epoch;
+std::string why_not_accepted(const diagnose::Diagnosis& d) {
+  if (d.findings.empty() && d.noise.empty()) return {};
+  if (!(d.after.log_likelihood_per_epoch > d.before.log_likelihood_per_epoch))
+    return "All that was found together makes the recording no likelier. What is really missing is not known.";
+  if (diagnose::drifts_farther(d.before, d.after))
+    return fmt::format(
+        "With all that was found together outages drift farther, {:.3g} m before and {:.3g} m now: the fixes are "
+        "likelier, the motion between them is not.",
+        d.before.outage_rms_m, d.after.outage_rms_m);
+  return {};
 }
 
 bool SimulationCheck::has(const diagnose::Finding& finding) const {
@@ -151,7 +159,7 @@ Json verification_json(const diagnose::Diagnosis& d) {
   }
   if (!d.twins_after.empty()) j["twins"] = twins_json(d.twins_after);
   j["rejected"] = d.rejected;
-  j["accepted"] = is_accepted(d);
+  j["accepted"] = why_not_accepted(d).empty();
   return j;
 }
 
@@ -199,8 +207,7 @@ std::string diagnosis_text(const diagnose::Diagnosis& d, const std::optional<Sim
                         simulation && simulation->has(f) ? " The simulation has it too." : "");
   for (const diagnose::NoiseFinding& f : d.noise)
     text += fmt::format("{} {} {}: {}\n", f.name, f.sensor, f.axis, explanation(f));
-  if (!is_accepted(d))
-    text += "All together it makes the recording no likelier: not accepted. What is really missing is not known.\n";
+  if (const std::string why = why_not_accepted(d); !why.empty()) text += fmt::format("Not accepted. {}\n", why);
   if (simulation)
     for (const diagnose::Finding& f : simulation->diagnosis.findings)
       if (!SimulationCheck{{}, d}.has(f))

@@ -26,8 +26,9 @@ struct SimulationCheck {
 /// changed. @param resolved  run.resolved.yaml
 [[nodiscard]] std::string diagnosed_yaml(const std::string& resolved, const diagnose::Diagnosis& diagnosis,
                                          const std::string& error_model);
-/// Whether the recording is likelier with all that was found than without; so where nothing was.
-[[nodiscard]] bool is_accepted(const diagnose::Diagnosis& diagnosis);
+/// Why all that was found is no better than nothing: the recording is no likelier with it, or outages drift farther. Empty
+/// where it is better, and where nothing was found.
+[[nodiscard]] std::string why_not_accepted(const diagnose::Diagnosis& diagnosis);
 /// Whether an error model with what was found differs from the configured one.
 [[nodiscard]] bool changes_error_model(const diagnose::Diagnosis& diagnosis);
 [[nodiscard]] report::Page diagnosis_page(const std::string& title, const diagnose::Diagnosis& diagnosis,

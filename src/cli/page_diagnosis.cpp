@@ -123,13 +123,14 @@ report::Section fit_section(const Diagnosis& d) {
          fmt::format("Sizes from one half of the mission, in alternating blocks, on the other: logarithm of the "
                      "likelihood ratio {:.1f} +- {:.1f}, better in {:.0f} % of {} blocks.",
                      d.held_out->gain, d.held_out->gain_sd, 100.0 * d.held_out->better, d.held_out->blocks)});
-  if (!is_accepted(d))
-    section.notes.push_back(
-        {report::Note::Kind::kWarning, "Not accepted",
-         "All that was found together makes the recording no likelier. What is really missing is not known."});
+  if (const std::string why = why_not_accepted(d); !why.empty())
+    section.notes.push_back({report::Note::Kind::kWarning, "Not accepted", why});
   for (const std::string& name : d.rejected)
-    section.notes.push_back({report::Note::Kind::kWarning, "Given up",
-                             fmt::format("{}: its size from one half of the mission makes the other half less likely.", name)});
+    section.notes.push_back(
+        {report::Note::Kind::kWarning, "Given up",
+         fmt::format("{}: its size from one half of the mission makes the other half less likely, or outages "
+                     "drift farther with it.",
+                     name)});
   return section;
 }
 

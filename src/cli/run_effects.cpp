@@ -71,9 +71,12 @@ std::vector<diagnose::NamedEffect> read_effects(const Node& list) {
   for (const Node& item : list.items()) {
     diagnose::NamedEffect one = named_effect(item);
     const auto from = item.find("start_s");
+    const auto to = item.find("end_s");
     if (from && one.effect == nullptr) throw from->error("an instant", "none: noise and converters are the same all the time");
+    if ((from || to) && one.effect != nullptr && one.effect->slip)
+      throw item.error("an instant", fmt::format("none: {} is configured for the whole mission", one.effect->name));
     if (from) one.from_s = from->number();
-    if (const auto to = item.find("end_s")) one.to_s = to->number();
+    if (to) one.to_s = to->number();
     effects.push_back(std::move(one));
   }
   return effects;

@@ -38,6 +38,7 @@ const std::vector<Effect>& catalogue() {
       gravity_disturbance(),
       body_flexure(),
       imu_mount_rotation(),
+      vehicle_mounting(),
       earth_rotation_omitted(),
       coning_omitted(),
   };

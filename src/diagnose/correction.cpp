@@ -120,8 +120,10 @@ MissionInput without(const std::vector<NamedEffect>& effects, const MissionInput
     if (one.effect == nullptr) continue;
     const auto h = std::ranges::find_if(all, [&](const Hypothesis& x) { return x.effect == one.effect && x.axis == one.axis; });
     if (h == all.end())
-      throw InputError({input.imu.source, 0, fmt::format("nothing that {} could act on", one.effect->name),
-                        "a recording with temperatures", ""});
+      throw InputError(
+          {input.imu.source, 0,
+           fmt::format("nothing that {} could act on: {}", one.effect->name, run.hypotheses().why_not_seen(*one.effect)),
+           "no such effect, or a run that shows it", ""});
     Taken t{h - all.begin(), {}, {}, one.value};
     if (one.from_s) t.from = geo::GpsTime::from_week(week, *one.from_s);
     if (one.to_s) t.to = geo::GpsTime::from_week(week, *one.to_s);

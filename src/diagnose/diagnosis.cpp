@@ -33,6 +33,24 @@ void step_to_the_end(Search& search) {
   }
 }
 
+void give_up(Searched& searched, std::size_t index) {
+  Search& search = *searched.search;
+  const Hypothesis& h = search.run().hypotheses()[search.taken()[index].hypothesis];
+  searched.rejected.push_back(std::string(h.effect->name) + (h.axis_name().empty() ? "" : " " + h.axis_name()));
+  search.give_up(index);
+  searched.held_out.reset();
+}
+
+/// @return  whether something was given up
+bool heed_outages(Searched& searched) {
+  bool gave_up = false;
+  while (const std::optional<std::size_t> worst = what_spoils_outages(*searched.search)) {
+    give_up(searched, *worst);
+    gave_up = true;
+  }
+  return gave_up;
+}
+
 /// What explains nothing on held-out blocks is given up, the worst first. @return  whether something was
 bool hold_out(Searched& searched) {
   Search& search = *searched.search;
@@ -47,12 +65,8 @@ bool hold_out(Searched& searched) {
     }
     const auto worst = std::ranges::min_element(
         effects, [](const auto& a, const auto& b) { return std::pair(a.holds(), a.gain) < std::pair(b.holds(), b.gain); });
-    const auto index = static_cast<std::size_t>(worst - effects.begin());
-    const Hypothesis& h = search.run().hypotheses()[search.taken()[index].hypothesis];
-    searched.rejected.push_back(std::string(h.effect->name) + (h.axis_name().empty() ? "" : " " + h.axis_name()));
-    search.give_up(index);
+    give_up(searched, static_cast<std::size_t>(worst - effects.begin()));
     gave_up = true;
-    searched.held_out.reset();
   }
   return gave_up;
 }
@@ -63,7 +77,8 @@ void search_to_the_end(Searched& searched) {
   for (int round = 0; round < kMostRounds; ++round) {
     step_to_the_end(*searched.search);
     searched.search->forget_what_vanished();
-    if (!hold_out(searched)) return;
+    const bool spoilt = heed_outages(searched);
+    if (!hold_out(searched) && !spoilt) return;
   }
 }
 

@@ -157,11 +157,10 @@ class Conditional {
   Eigen::MatrixXd of_taken_;  ///< I_aa^-1 I_a
 };
 
-/// Whether what is left of the information is more than rounding, and tells more than nothing.
-bool is_seen(const Hypothesis& h, double left, double all) {
-  constexpr double kSame = 1e-4;  // of the variance: correlated by 0.99995 with what is taken
+/// Whether the information tells more than nothing of what is plausible.
+bool is_seen(const Hypothesis& h, double information) {
   const double plausible = kBlind * h.plausible;
-  return left > kSame * all && left * plausible * plausible > 1.0;
+  return information * plausible * plausible > 1.0;
 }
 
 Suspicion best_of(const Examination::Track& track, const Hypothesis& h) {
@@ -260,6 +259,7 @@ void Suspicions::judge(const LargestByChance& by_chance) {
 }
 
 Suspicions suspicions(const Examination& examination, const Hypotheses& hypotheses, const std::vector<Eigen::Index>& taken) {
+  constexpr double kSame = 1e-4;  // of the variance: correlated by 0.99995 with what is taken
   Suspicions result;
   const Conditional conditional(examination, taken);
   Eigen::VectorXd largest = Eigen::VectorXd::Zero(examination.null_score.cols());
@@ -267,16 +267,18 @@ Suspicions suspicions(const Examination& examination, const Hypotheses& hypothes
     const Hypothesis& h = hypotheses[i];
     if (h.begins_at_some_time() || std::ranges::find(taken, i) != taken.end()) continue;
     const double information = conditional.information(i);
-    if (!is_seen(h, information, examination.information(i, i))) continue;
+    if (!(information > kSame * examination.information(i, i))) continue;
     const double score = conditional.score(i);
-    largest = largest.cwiseMax(conditional.null_score(i).cwiseAbs2() / information);
-    result.all.push_back({.hypothesis = i,
-                          .from = {},
-                          .from_sd_s = 0.0,
-                          .estimate = score / information,
-                          .sd = 1.0 / std::sqrt(information),
-                          .likelihood_ratio = score * score / information,
-                          .log_bayes = log_bayes_factor(score, information, h.plausible)});
+    const bool seen = is_seen(h, information);
+    if (seen) largest = largest.cwiseMax(conditional.null_score(i).cwiseAbs2() / information);
+    (seen ? result.all : result.implausible)
+        .push_back({.hypothesis = i,
+                    .from = {},
+                    .from_sd_s = 0.0,
+                    .estimate = score / information,
+                    .sd = 1.0 / std::sqrt(information),
+                    .likelihood_ratio = score * score / information,
+                    .log_bayes = log_bayes_factor(score, information, h.plausible)});
   }
   for (const Examination::Track& track : examination.tracks) {
     if (track.t.empty()) continue;

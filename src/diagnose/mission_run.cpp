@@ -9,7 +9,7 @@ namespace coast::diagnose {
 MissionRun::MissionRun(MissionInput input, Grade grade, const std::vector<EffectPtr>& suggested,
                        const study::Progress& progress)
     : mission_(std::move(input.imu), std::move(input.gnss), std::move(input.setup), progress),
-      hypotheses_(mission_.mission(), grade, path_, suggested) {
+      hypotheses_(mission_.mission(), mission_.options(), grade, path_, suggested) {
   study::SolutionOutputs outputs;
   outputs.smoothed = [this](const record::TrajectoryEpoch& epoch) {
     path_.push_back(epoch.nav);

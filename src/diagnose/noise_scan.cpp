@@ -9,7 +9,7 @@ namespace coast::diagnose {
 
 namespace {
 
-constexpr double kRarest = 1e-290;
+constexpr double kRarest = -600.0;  // logarithm of a probability
 
 /// Likelihood ratio for one degree of freedom that is as rare by chance as a sum of squares with the draws' mean and variance.
 struct PowerByChance {
@@ -19,8 +19,12 @@ struct PowerByChance {
       : mean(draws.mean()), variance((draws - draws.mean()).square().sum() / static_cast<double>(draws.size() - 1)) {}
   [[nodiscard]] double likelihood_ratio(double power) const {
     const double dof = 2.0 * mean * mean / variance;
-    const double p = std::clamp(noise::chi2_survival(dof, dof * power / mean), kRarest, 1.0 - 1e-12);
-    return noise::chi2_upper_quantile(1.0, p);
+    const double log_p = noise::chi2_log_survival(dof, dof * power / mean);
+    if (log_p > kRarest) return noise::chi2_upper_quantile(1.0, std::min(std::exp(log_p), 1.0 - 1e-12));
+    // p = sqrt(2 / (pi r)) exp(-r / 2) of one degree of freedom, for r by the hundred.
+    double ratio = -2.0 * log_p;
+    for (int i = 0; i < 4; ++i) ratio = -2.0 * log_p + std::log(2.0 / geo::kPi) - std::log(ratio);
+    return ratio;
   }
   /// One step of scoring: the score is (power - mean)/2, its variance the information.
   [[nodiscard]] double scored_variance(double power) const { return 2.0 * (power - mean) / variance; }

@@ -69,7 +69,7 @@ bool Search::step() {
     run_again();
     return true;
   }
-  if (form && beats_candidates(form_gain)) {
+  if (form && exceeds_candidates(form_gain, &Candidates::gain)) {
     try_out(*form);
     return true;
   }
@@ -166,6 +166,14 @@ MissionInput Search::with_values(const std::vector<Taken>& taken) const {
   input.setup.start = current_.setup.start;
   input.setup.start_sensor_errors = current_.setup.start_sensor_errors;
   return input;
+}
+
+Fit Search::fit_with(const std::vector<Taken>& taken) const {
+  try {
+    return MissionRun(with_values(taken), grade_, suggested_, progress_).fit();
+  } catch (const NumericalError&) {
+    return {.outage_rms_m = std::numeric_limits<double>::infinity()};
+  }
 }
 
 void Search::give_up(std::size_t index) {

@@ -16,6 +16,7 @@ struct Candidate {
   Suspicion suspicion;
   std::optional<double> by_runs;  ///< gain in log-likelihood, where runs were made
   double freed = 0.0;             ///< what those cost that are nothing beside it
+  [[nodiscard]] Eigen::Index hypothesis() const { return suspicion.hypothesis; }
   /// With the gain of runs for that of the scores, and the price of what is implausible as it is.
   [[nodiscard]] double log_bayes() const { return by_runs ? *by_runs - suspicion.price() + freed : suspicion.log_bayes; }
 };
@@ -69,6 +70,8 @@ class Search {
   }
   /// The mission with other values of what was taken, noise and start as they are.
   [[nodiscard]] MissionInput with_values(const std::vector<Taken>& taken) const;
+  /// Of a run with these; endless drift where the filter does not get through.
+  [[nodiscard]] Fit fit_with(const std::vector<Taken>& taken) const;
   /// What the last run says. @param counts  nothing: all innovations
   [[nodiscard]] Examination examined(const std::function<bool(geo::GpsTime)>& counts = {}, Eigen::Index draws = 400) const;
   /// Takes an effect back, and runs again.
@@ -112,6 +115,10 @@ class Search {
   /// The likeliest random effect of an axis, and on the same axis the others, whose gains are set against each other.
   /// @param to_beat  gain of another way to model noise
   bool take_random_effect(const Examination& examination, double to_beat);
+  /// The size at which a random effect explains most.
+  [[nodiscard]] FittedEffect fitted(const AddedNoise& noise) const;
+  /// Likewise at the correlation time that does, uphill from one at which it is known.
+  [[nodiscard]] FittedEffect fitted_in_time(FittedEffect fit) const;
   [[nodiscard]] bool was_refused(const AddedNoise& noise) const;
   /// @param fits  the first is taken
   void describe(const std::vector<FittedEffect>& fits, double p_value);
@@ -125,10 +132,9 @@ class Search {
   void run_candidates();
   /// As far as this step made runs without it.
   [[nodiscard]] std::optional<double> gained_by_runs(const Suspicion& s) const;
-  /// Whether something else explains more than every candidate, by runs of these where their scores leave it open.
-  [[nodiscard]] bool beats_candidates(double gain);
-  /// Whether it is also the likelier explanation, with all that choosing costs.
-  [[nodiscard]] bool is_likelier_than_candidates(double evidence);
+  /// Whether something else explains more than every candidate, or is the likelier explanation with all that choosing costs; by
+  /// runs of these where their scores leave it open.
+  [[nodiscard]] bool exceeds_candidates(double value, double Candidates::*figure);
   /// Logarithm of the number of mean effects of which one is chosen.
   [[nodiscard]] double log_choices() const { return std::log(static_cast<double>(run_->hypotheses().size())); }
   [[nodiscard]] double evidence_of(const Suspicion& s) const { return s.log_bayes - log_choices(); }

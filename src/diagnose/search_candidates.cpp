@@ -73,14 +73,9 @@ void Search::run_candidates() {
   }
 }
 
-bool Search::beats_candidates(double gain) {
-  if (gain > candidates_.gain) run_candidates();
-  return gain > candidates_.gain;
-}
-
-bool Search::is_likelier_than_candidates(double evidence) {
-  if (evidence > candidates_.evidence) run_candidates();
-  return evidence > candidates_.evidence;
+bool Search::exceeds_candidates(double value, double Candidates::*figure) {
+  if (value > candidates_.*figure) run_candidates();
+  return value > candidates_.*figure;
 }
 
 Suspicion Search::winner() {
@@ -145,7 +140,7 @@ bool Search::take_time_offset() {
 }
 
 void Search::reconsider(const Taken& one, double gain) {
-  auto at = std::ranges::find(candidates_.all, one.hypothesis, [](const Candidate& c) { return c.suspicion.hypothesis; });
+  auto at = std::ranges::find(candidates_.all, one.hypothesis, &Candidate::hypothesis);
   if (at == candidates_.all.end()) {
     const auto suspicion = std::ranges::find(suspicions_.all, one.hypothesis, &Suspicion::hypothesis);
     if (suspicion == suspicions_.all.end() || gain < 0.5 * result_.threshold) return;
@@ -204,7 +199,7 @@ std::optional<double> log_odds_told(double by_data, double by_evidence) {
 }
 
 std::optional<double> Search::gained_by_runs(const Suspicion& s) const {
-  const auto at = std::ranges::find(candidates_.all, s.hypothesis, [](const Candidate& c) { return c.suspicion.hypothesis; });
+  const auto at = std::ranges::find(candidates_.all, s.hypothesis, &Candidate::hypothesis);
   return at != candidates_.all.end() ? at->by_runs : std::nullopt;
 }
 
@@ -227,13 +222,15 @@ void Search::take(const Suspicion& s) {
                   .held_out_gain = {},
                   .alternatives = {},
                   .stability = {}};
-  for (const Suspicion& other : suspicions_.all) {
-    if (other.hypothesis == s.hypothesis) continue;
+  const auto tell = [&](const Suspicion& other) {
+    if (other.hypothesis == s.hypothesis) return;
     const double by_data = gained_by_runs(s) && gained_by_runs(other) ? *gained_by_runs(s) - *gained_by_runs(other)
                                                                       : 0.5 * (s.likelihood_ratio - other.likelihood_ratio);
     if (const auto odds = log_odds_told(by_data, by_data + other.price() - s.price()))
       finding.alternatives.push_back(alternative(other, *odds));
-  }
+  };
+  std::ranges::for_each(suspicions_.all, tell);
+  std::ranges::for_each(suspicions_.implausible, tell);
   for (const FittedEffect& fit : beaten_)
     if (const auto odds = log_odds_told(0.5 * s.likelihood_ratio - fit.gain, evidence_of(s) - diagnose::evidence_of(fit)))
       finding.alternatives.push_back(diagnose::alternative(fit, *odds));

@@ -93,7 +93,7 @@ void Search::try_out(const Proposal& form) {
 }
 
 bool Search::form_is_confirmed(const Taken& form, const Finding& finding, double gain) {
-  if (!candidates_.all.empty() && !beats_candidates(gain - finding.price) && makes_likelier(winner())) {
+  if (!candidates_.all.empty() && !exceeds_candidates(gain - finding.price, &Candidates::gain) && makes_likelier(winner())) {
     refused_forms_.push_back(*std::ranges::find(suggested_, finding.hypothesis.effect, &EffectPtr::get));
     return false;
   }

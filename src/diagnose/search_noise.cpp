@@ -67,7 +67,7 @@ bool Search::take_noise(const Examination& examination, double form_gain) {
   }
   const double stated_gain = stated ? stated->gain() : 0.0;
   if (added_.size() < kMostRandom && take_random_effect(examination, std::max(form_gain, stated_gain))) return true;
-  if (!stated || stated_gain <= form_gain || !beats_candidates(stated_gain)) return false;
+  if (!stated || stated_gain <= form_gain || !exceeds_candidates(stated_gain, &Candidates::gain)) return false;
   noise_ = std::move(stated);
   return true;
 }
@@ -104,24 +104,45 @@ bool Search::take_random_effect(const Examination& examination, double to_beat) 
         (first == nullptr || s.likelihood_ratio > first->likelihood_ratio))
       first = &s;
   if (first == nullptr) return false;
-  const auto fitted = [&](const NoiseSuspicion& suspicion) {
-    return fitted_effect(suspicion.noise, current_, run_->layout(), run_->log_likelihood());
-  };
-  std::vector<FittedEffect> fits{fitted(*first)};
+  std::vector<FittedEffect> fits{fitted(first->noise)};
   const double p_value = suspected.chance.p_value(2.0 * std::max(0.0, fits.front().gain));
   const double gain = fits.front().gain - std::log(suspected.chance.count);
-  if (p_value > kNoiseFalseAlarm || gain <= to_beat || !is_likelier_than_candidates(diagnose::evidence_of(fits.front()))) {
+  if (p_value > kNoiseFalseAlarm || gain <= to_beat ||
+      !exceeds_candidates(diagnose::evidence_of(fits.front()), &Candidates::evidence)) {
     if (p_value > kNoiseFalseAlarm) refused_noise_.push_back(first->noise);
     beaten_ = std::move(fits);
     return false;
   }
+  fits.front() = fitted_in_time(fits.front());
   for (const NoiseEffect& effect : noise_catalogue())
     if (const NoiseSuspicion* s = strongest(suspected, effect, first->noise); s != nullptr && &effect != first->noise.effect)
-      fits.push_back(fitted(*s));
-  std::ranges::sort(fits, std::ranges::greater{}, &FittedEffect::gain);
+      fits.push_back(fitted_in_time(fitted(s->noise)));
+  std::ranges::sort(fits, std::ranges::greater{}, [](const FittedEffect& fit) { return diagnose::evidence_of(fit); });
   describe(fits, p_value);
   added_.push_back(fits.front().noise);
   return true;
+}
+
+FittedEffect Search::fitted(const AddedNoise& noise) const {
+  return fitted_effect(noise, current_, run_->layout(), run_->log_likelihood());
+}
+
+FittedEffect Search::fitted_in_time(FittedEffect fit) const {
+  const std::vector<double>& times = fit.noise.effect->times;
+  const auto count = static_cast<std::ptrdiff_t>(times.size());
+  const std::ptrdiff_t begin = std::ranges::find(times, fit.noise.time) - times.begin();
+  for (const std::ptrdiff_t step : {-1, 1}) {
+    const double before = fit.gain;
+    for (std::ptrdiff_t k = begin + step; k >= 0 && k < count; k += step) {
+      AddedNoise noise = fit.noise;
+      noise.time = times[static_cast<std::size_t>(k)];
+      FittedEffect other = fitted(noise);
+      if (!(other.gain > fit.gain)) break;
+      fit = std::move(other);
+    }
+    if (fit.gain > before) break;
+  }
+  return fit;
 }
 
 bool Search::was_refused(const AddedNoise& noise) const {
@@ -135,8 +156,9 @@ Alternative alternative(const FittedEffect& fit, double log_odds) {
           log_odds};
 }
 
+// That it is of this correlation time is chosen too.
 double evidence_of(const FittedEffect& fit) {
-  return fit.gain - price_of_random_effect(fit.log_sd);
+  return fit.gain - price_of_random_effect(fit.log_sd) - std::log(static_cast<double>(fit.noise.effect->times.size()));
 }
 
 double price_of_random_effect(double log_sd) {
@@ -163,7 +185,9 @@ void Search::describe(const std::vector<FittedEffect>& fits, double p_value) {
                        .equation = std::string(f.noise.effect->equation),
                        .separating_manoeuvre = std::string(f.noise.effect->separating_manoeuvre)};
   for (std::size_t i = 1; i < fits.size(); ++i)
-    if (f.gain - fits[i].gain < kLogOdds) finding.alternatives.push_back(diagnose::alternative(fits[i], f.gain - fits[i].gain));
+    if (const std::optional<double> odds =
+            log_odds_told(f.gain - fits[i].gain, diagnose::evidence_of(f) - diagnose::evidence_of(fits[i])))
+      finding.alternatives.push_back(diagnose::alternative(fits[i], *odds));
   for (const Suspicion& s : suspicions_.all)
     if (const std::optional<double> odds =
             log_odds_told(f.gain - 0.5 * s.likelihood_ratio, diagnose::evidence_of(f) - evidence_of(s)))

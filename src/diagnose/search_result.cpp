@@ -7,25 +7,6 @@
 
 namespace coast::diagnose {
 
-namespace {
-
-PairedDifference paired_difference(const std::vector<double>& before, const std::vector<double>& after) {
-  PairedDifference d;
-  if (before.size() != after.size() || before.size() < 2) return d;
-  d.count = static_cast<int>(before.size());
-  double sum = 0.0, squares = 0.0;
-  for (std::size_t i = 0; i < before.size(); ++i) {
-    sum += after[i] - before[i];
-    squares += (after[i] - before[i]) * (after[i] - before[i]);
-  }
-  const double n = d.count;
-  d.mean = sum / n;
-  d.sd = std::sqrt(std::max(0.0, squares - n * d.mean * d.mean) / (n * (n - 1.0)));
-  return d;
-}
-
-}  // namespace
-
 Diagnosis Search::finish() {
   describe_what_was_not_found();
   std::ranges::move(noise_findings(), std::back_inserter(result_.noise));
@@ -36,7 +17,7 @@ Diagnosis Search::finish() {
   std::ranges::stable_sort(result_.findings, std::ranges::greater{}, &Finding::delta_log_likelihood);
   result_.suggested.insert(result_.suggested.end(), suggested_.begin(), suggested_.end());
   result_.after = run_->fit();
-  result_.outage_change = paired_difference(result_.before.outages_m, result_.after.outages_m);
+  result_.outage_change = outage_difference(result_.before, result_.after);
   result_.innovations_after = run_->solution().forward.innovations;
   result_.modelled = std::move(current_);
   return std::move(result_);
@@ -137,12 +118,8 @@ void Search::describe_what_was_not_found() {
   for (Eigen::Index i = 0; i < hypotheses.size(); ++i)
     if (!told[static_cast<std::size_t>(i)])
       result_.not_observable.push_back({hypotheses[i], "of what is plausible this mission shows nothing"});
-  for (const Effect& effect : catalogue()) {
-    const char* reason = nullptr;
-    if (effect.needs_reference) reason = "no innovation changes: only a reference could show it";
-    if (effect.needs_temperature && run_->mission().imu.temperature.empty()) reason = "no temperature was recorded";
-    if (reason != nullptr) result_.not_observable.push_back({{&effect, 0, 0.0}, reason});
-  }
+  for (const Effect& effect : catalogue())
+    if (const char* reason = hypotheses.why_not_seen(effect)) result_.not_observable.push_back({{&effect, 0, 0.0}, reason});
 }
 
 }  // namespace coast::diagnose

@@ -5,7 +5,9 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <optional>
 
+#include "coast/geo/earth.hpp"
 #include "noise_effects/noise_effects.hpp"
 #include "search.hpp"
 
@@ -13,35 +15,56 @@ namespace coast::diagnose {
 
 namespace {
 
-/// A quantity that splits a mission into a half with more and a half with less of it.
+/// A quantity over time that splits a mission into a half with more and a half with less of it.
 struct Regime {
-  const char* name;
-  double (*of)(const Signals&);
-};
-constexpr std::array<Regime, 6> kRegimes{{
-    {"speed", [](const Signals& s) { return s.speed; }},
-    {"turn rate", [](const Signals& s) { return s.omega.norm(); }},
-    {"acceleration", [](const Signals& s) { return std::abs(s.f.norm() - geo::kStandardGravity); }},
-    {"vibration", [](const Signals& s) { return s.vibration.sum(); }},
-    {"temperature", [](const Signals& s) { return s.temperature; }},
-    {"time", [](const Signals& s) { return s.elapsed; }},
-}};
-
-struct RegimeSeries {
-  std::vector<geo::GpsTime> t;
-  std::array<std::vector<double>, kRegimes.size()> values;
+  std::string name;
+  std::vector<geo::GpsTime> t = {};
+  std::vector<double> value = {};
+  void add(geo::GpsTime at, double of) {
+    t.push_back(at);
+    value.push_back(of);
+  }
+  [[nodiscard]] bool has_more(geo::GpsTime at, double middle) const {
+    const auto behind = std::min(std::ranges::lower_bound(t, at), t.end() - 1);
+    return value[static_cast<std::size_t>(behind - t.begin())] > middle;
+  }
 };
 
-/// Means over tenths of seconds, as innovations come.
-RegimeSeries regimes_of(const MissionRun& run) {
-  constexpr double kStep = 0.1;  // s
-  RegimeSeries series;
-  run.for_each_sample([&](std::size_t, geo::GpsTime t, const Signals& signals) {
-    if (!series.t.empty() && t - series.t.back() < kStep) return;
-    series.t.push_back(t);
-    for (std::size_t i = 0; i < kRegimes.size(); ++i) series.values[i].push_back(kRegimes[i].of(signals));
+constexpr double kRegimeStep = 0.1;  // s, as innovations come
+
+void add_motion(const MissionRun& run, std::vector<Regime>& regimes) {
+  const std::size_t first = regimes.size();
+  for (const char* name : {"speed", "turn rate", "acceleration", "vibration", "temperature", "time"}) regimes.push_back({name});
+  std::optional<geo::GpsTime> last;
+  run.for_each_sample([&](std::size_t, geo::GpsTime t, const Signals& s) {
+    if (last && t - *last < kRegimeStep) return;
+    last = t;
+    const std::array values{s.speed,           s.omega.norm(), std::abs(s.f.norm() - geo::kStandardGravity),
+                            s.vibration.sum(), s.temperature,  s.elapsed};
+    for (std::size_t i = 0; i < values.size(); ++i) regimes[first + i].add(t, values[i]);
   });
-  return series;
+}
+
+/// Of the body's forward axis.
+void add_heading(const MissionRun& run, std::vector<Regime>& regimes) {
+  Regime north{"heading to the north"};
+  Regime east{"heading to the east"};
+  for (const record::NavState& nav : run.path()) {
+    if (!north.t.empty() && nav.t - north.t.back() < kRegimeStep) continue;
+    const Eigen::Vector3d forward_e = nav.q_b_e.toRotationMatrix().col(0);
+    const Eigen::Matrix3d C_n_e = geo::C_n_e(geo::geodetic_from_ecef(nav.r_eb_e));
+    north.add(nav.t, C_n_e.col(0).dot(forward_e));
+    east.add(nav.t, C_n_e.col(1).dot(forward_e));
+  }
+  regimes.push_back(std::move(north));
+  regimes.push_back(std::move(east));
+}
+
+void add_satellites(const MissionRun& run, std::vector<Regime>& regimes) {
+  Regime satellites{"satellites"};
+  for (const record::GnssFix& fix : run.mission().gnss.fixes)
+    if (fix.satellites) satellites.add(fix.t - run.mission().time_offset_s, *fix.satellites);
+  regimes.push_back(std::move(satellites));
 }
 
 struct Mean {
@@ -74,26 +97,33 @@ void add_innovations(const MissionRun& run, std::vector<Statistic>& figures) {
                        squares[i] > 0.0 ? products[i] / squares[i] : 0.0});
 }
 
-void add_regimes(const MissionRun& run, std::vector<Statistic>& figures) {
-  const RegimeSeries series = regimes_of(run);
-  for (std::size_t i = 0; i < kRegimes.size(); ++i) {
-    std::vector<double> sorted = series.values[i];
-    double difference = 0.0;
-    if (!sorted.empty() && std::ranges::min(sorted) < std::ranges::max(sorted)) {
-      const auto middle = sorted.begin() + static_cast<std::ptrdiff_t>(sorted.size() / 2);
-      std::ranges::nth_element(sorted, middle);
-      std::array<Mean, 2> nis;
-      for (const estimate::InnovationRecord& r : run.solution().forward.innovations) {
-        if (!r.used) continue;
-        const auto at = std::min(std::ranges::lower_bound(series.t, r.t), series.t.end() - 1);
-        Mean& mean = nis[series.values[i][static_cast<std::size_t>(at - series.t.begin())] > *middle ? 1 : 0];
-        mean.sum += r.nis;
-        mean.count += r.dof;
-      }
-      difference = nis[1].value() - nis[0].value();
-    }
-    figures.push_back({fmt::format("NIS with more {} less that with less", kRegimes[i].name), difference});
+/// 0 where the regime never changes, or is not known.
+double nis_with_more_less_with_less(const MissionRun& run, const Regime& regime) {
+  if (regime.value.empty()) return 0.0;
+  std::vector<double> sorted = regime.value;
+  std::ranges::sort(sorted);
+  // Of counts the largest may be that of more than half.
+  const auto largest = std::ranges::lower_bound(sorted, sorted.back());
+  if (largest == sorted.begin()) return 0.0;
+  const auto middle = std::min(sorted.begin() + static_cast<std::ptrdiff_t>(sorted.size() / 2), largest - 1);
+  std::array<Mean, 2> nis;
+  for (const estimate::InnovationRecord& r : run.solution().forward.innovations) {
+    if (!r.used) continue;
+    Mean& mean = nis[regime.has_more(r.t, *middle) ? 1 : 0];
+    mean.sum += r.nis;
+    mean.count += r.dof;
   }
+  return nis[0].count > 0.0 && nis[1].count > 0.0 ? nis[1].value() - nis[0].value() : 0.0;
+}
+
+void add_regimes(const MissionRun& run, std::vector<Statistic>& figures) {
+  std::vector<Regime> regimes;
+  add_motion(run, regimes);
+  add_heading(run, regimes);
+  add_satellites(run, regimes);
+  for (const Regime& regime : regimes)
+    figures.push_back(
+        {fmt::format("NIS with more {} less that with less", regime.name), nis_with_more_less_with_less(run, regime)});
 }
 
 /// Power of the disturbances of each axis as a Gauss-Markov process would bring about, over what chance has: their Allan curve,

@@ -55,6 +55,13 @@ double chi2_survival(double dof, double x) {
   return half < a + 1.0 ? 1.0 - scale * lower_by_series(a, half) : scale * upper_by_fraction(a, half);
 }
 
+double chi2_log_survival(double dof, double x) {
+  const double a = 0.5 * dof;
+  const double half = 0.5 * x;
+  if (half < a + 1.0) return std::log(chi2_survival(dof, x));
+  return a * std::log(half) - half - std::lgamma(a) + std::log(upper_by_fraction(a, half));
+}
+
 double chi2_upper_quantile(double dof, double p) {
   double low = 0.0;
   double high = dof;

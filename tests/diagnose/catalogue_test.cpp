@@ -34,7 +34,7 @@ TEST(Catalogue, EveryEffectIsNamedOnceAndComplete) {
     for (const std::string_view words : {e.name, e.parameter, e.unit, e.equation, e.meaning, e.separating_manoeuvre, e.source})
       EXPECT_FALSE(words.empty()) << e.name;
     EXPECT_FALSE(e.axes.empty()) << e.name;
-    EXPECT_TRUE(e.sensors || e.position) << e.name;
+    EXPECT_TRUE(e.sensors || e.position || e.slip) << e.name;
     for (std::size_t grade = 0; grade < 4; ++grade) EXPECT_GT(e.plausible[grade], 0.0) << e.name;
   }
   EXPECT_GE(catalogue().size(), 30U);
@@ -64,6 +64,11 @@ TEST(Catalogue, EveryAxisActs) {
       part.setZero();
       at_the_antenna(fix, part);
       sum += part.cwiseAbs();
+    }
+    if (e.slip) {
+      const estimate::NonHolonomic wheels{.pitch = 0.1, .yaw = -0.1};
+      e.slip({{10.0, 0.5, -0.3}, wheels}, sum.topRows<2>());
+      sum = sum.cwiseAbs();
     }
     EXPECT_TRUE((sum.colwise().sum().array() > 0.0).all()) << e.name;
   }

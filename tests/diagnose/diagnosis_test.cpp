@@ -72,6 +72,59 @@ TEST(Diagnosis, AWrongLeverArmIsNotASlipBehindAWrongFix) {
   for (const Finding& f : d.findings) EXPECT_NE(f.hypothesis.effect->name, "antenna_mount_slip") << names(d);
 }
 
+// By hand: differences 3, 1, 2: mean 2, sd of the mean 1 / sqrt(3).
+TEST(Drift, IsFartherWhereItIsByHalfAndNotByChance) {
+  const auto fit = [](const std::vector<double>& outages) {
+    double squares = 0.0;
+    for (const double d : outages) squares += d * d;
+    return Fit{.outage_rms_m = std::sqrt(squares / static_cast<double>(outages.size())), .outages_m = outages};
+  };
+  const Fit before = fit({2.0, 3.0, 1.0});
+  const Fit after = fit({5.0, 4.0, 3.0});
+  const PairedDifference d = outage_difference(before, after);
+  EXPECT_EQ(d.count, 3);
+  EXPECT_NEAR(d.mean, 2.0, 1e-12);
+  EXPECT_NEAR(d.sd, 1.0 / std::sqrt(3.0), 1e-12);
+  EXPECT_TRUE(drifts_farther(before, after));
+  EXPECT_FALSE(drifts_farther(after, before));
+  EXPECT_FALSE(drifts_farther(before, fit({9.0, 1.0, 1.0})));  // one of them alone
+  EXPECT_FALSE(drifts_farther(before, fit({2.5, 3.5, 1.5})));  // each of them, and little
+  EXPECT_FALSE(drifts_farther(before, fit({9.0})));            // not the same outages
+}
+
+// Fixes of few satellites err three times as far as they say.
+TEST(Diagnosis, AMisfitIsLocatedWhereSatellitesAreFew) {
+  MissionInput input = test::honest_mission(17, 220.0);
+  std::mt19937 generator(3);
+  std::normal_distribution<double> error(0.0, 0.03);  // m
+  for (std::size_t i = 0; i < input.gnss.fixes.size(); ++i) {
+    record::GnssFix& fix = input.gnss.fixes[i];
+    fix.satellites = i / 40 % 2 == 0 ? 12 : 5;  // by stretches of 20 s
+    if (*fix.satellites == 5) fix.r_ea_e += Eigen::Vector3d(error(generator), error(generator), error(generator));
+  }
+  const Diagnosis d = diagnose::diagnose(input, {.twins = 5}, {});
+  const auto at = [&](std::string_view name) { return std::ranges::find(d.twins, name, &TwinStatistic::name); };
+  const auto satellites = at("NIS with more satellites less that with less");
+  ASSERT_NE(satellites, d.twins.end());
+  EXPECT_LT(satellites->real, satellites->q05);
+  EXPECT_LT(satellites->p_adjusted, 0.2);  // 1/6 is the least that five twins can tell
+  const auto north = at("NIS with more heading to the north less that with less");
+  ASSERT_NE(north, d.twins.end());
+  EXPECT_GT(std::abs(satellites->real), std::abs(north->real));
+}
+
+// The vehicle of the simulation rolls along its body's x axis; the configuration says elsewhere, and does not estimate it.
+TEST(Diagnosis, AVehicleThatRollsElsewhereIsFound) {
+  MissionInput input = test::honest_mission(16);
+  input.setup.filter.vehicle.non_holonomic =
+      estimate::NonHolonomic{.sd_lateral_mps = 0.1, .sd_vertical_mps = 1.0, .yaw = 0.08};  // it bobs by 0.2 m/s
+  const Diagnosis d = diagnose::diagnose(input, kWithoutTwins, {});
+  const Finding* f = only(d, "vehicle_mounting", "z");
+  ASSERT_NE(f, nullptr) << names(d);
+  EXPECT_NEAR(f->value, -0.08, 4.0 * f->sd);
+  EXPECT_NEAR(d.modelled.setup.filter.vehicle.non_holonomic->yaw, 0.0, 4.0 * f->sd);
+}
+
 TEST(Diagnosis, ATimeOffsetIsFound) {
   MissionInput input = test::honest_mission(3);
   input.setup.time_offset_s = 0.03;
@@ -156,9 +209,14 @@ const NoiseFinding* noise_named(const Diagnosis& d, std::string_view name, std::
 TEST(Diagnosis, WhatIsFoundHoldsOnHeldOutBlocks) {
   MissionInput input = test::honest_mission(15);
   for (record::ImuSample& sample : input.imu.samples) sample.dv.x() *= 1.01;
+  // The receiver was on ten minutes before the IMU was: of those no block tells anything.
+  std::vector<record::GnssFix> before(1200, input.gnss.fixes.front());
+  for (std::size_t i = 0; i < before.size(); ++i) before[i].t = before[i].t + -0.5 * static_cast<double>(before.size() - i);
+  input.gnss.fixes.insert(input.gnss.fixes.begin(), before.begin(), before.end());
   const Diagnosis d = diagnose::diagnose(input, kWithoutTwins, {});
   ASSERT_NE(only(d, "accel_scale_factor", "x"), nullptr) << names(d);
   ASSERT_TRUE(d.held_out.has_value());
+  EXPECT_EQ(d.held_out->blocks, 10);  // 300 s
   EXPECT_GT(d.held_out->gain, 3.0 * d.held_out->gain_sd);
   EXPECT_GT(d.held_out->after_per_epoch, d.held_out->before_per_epoch);
   ASSERT_TRUE(d.findings.front().held_out_gain.has_value());

@@ -21,7 +21,7 @@ class Examined {
   explicit Examined(const MissionInput& input)
       : input_(input),
         mission_(input.imu, input.gnss, input.setup, {}),
-        hypotheses_(mission_.mission(), Grade::kIndustrial, path_, {}) {
+        hypotheses_(mission_.mission(), mission_.options(), Grade::kIndustrial, path_, {}) {
     study::SolutionOutputs outputs;
     outputs.smoothed = [this](const record::TrajectoryEpoch& epoch) { path_.push_back(epoch.nav); };
     solution_ = study::solve(mission_, mission_.options(), true, outputs, {});
@@ -71,12 +71,16 @@ MissionInput mission_led_by_fixes() {
 // the filter's own velocity have the last innovations in them: a shift of tags would be told wrong by tens of standard
 // deviations.
 TEST(Examination, ScoresAreSlopesOfTheLogLikelihood) {
-  const Examined examined(mission_led_by_fixes());
+  MissionInput input = mission_led_by_fixes();
+  input.setup.filter.vehicle.non_holonomic = estimate::NonHolonomic{.point_b = {-0.5, 0.1, 1.0}, .pitch = 0.02, .yaw = -0.03};
+  const Examined examined(input);
   const Examination e = examined.examine(0);
   for (const auto& [name, axis] : {std::pair{"imu_timestamp_gap", 0},
                                    {"imu_clock_drift", 0},
                                    {"lever_arm_error", 0},
                                    {"lever_arm_error", 1},
+                                   {"vehicle_mounting", 0},
+                                   {"vehicle_mounting", 1},
                                    {"accel_scale_factor", 1}}) {
     const Eigen::Index i = examined.find(name, axis);
     const double sd = 1.0 / std::sqrt(e.information(i, i));

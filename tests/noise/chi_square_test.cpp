@@ -41,6 +41,14 @@ TEST(ChiSquare, SurvivalIsTheIntegralOfTheDensity) {
   EXPECT_NEAR(noise::chi2_survival(1, 1.0), std::erfc(std::sqrt(0.5)), 1e-15);
 }
 
+// With two degrees of freedom the survival is exp(-x/2), with four (1 + x/2) exp(-x/2): Abramowitz & Stegun eq. 26.4.4.
+TEST(ChiSquare, LogSurvivalGoesOnWhereSurvivalUnderflows) {
+  for (const double x : {0.1, 1.0, 10.0, 100.0, 5e3, 1e6}) {
+    EXPECT_NEAR(noise::chi2_log_survival(2, x), -0.5 * x, 1e-12 * (1.0 + x)) << x;
+    EXPECT_NEAR(noise::chi2_log_survival(4, x), std::log1p(0.5 * x) - 0.5 * x, 1e-12 * (1.0 + x)) << x;
+  }
+}
+
 // Degrees of freedom that are not whole: the density's integral again; chi2(2 a) is monotone in between.
 TEST(ChiSquare, AnyDegreesOfFreedom) {
   for (const double dof : {2.7, 5.5, 146.177, 801.25}) {

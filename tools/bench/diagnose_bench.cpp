@@ -15,7 +15,7 @@ struct Filtered {
   explicit Filtered(int seconds)
       : recording(bench::city_mission(seconds)),
         mission{.imu = recording.imu, .gnss = recording.gnss, .lever_arm_b = bench::lever_arm()},
-        filter(mission, bench::model_21(), {}),
+        filter(mission, bench::model_21(), options),
         start(filter.initial_state(recording.truth.states.front(), Eigen::Vector3d::Constant(0.02),
                                    Eigen::Vector3d::Constant(0.02), Eigen::Vector3d::Constant(0.2 * geo::kDegree))) {
     estimate::FilterOutputs outputs;
@@ -24,6 +24,7 @@ struct Filtered {
   }
   const simulate::SimulatedMission& recording;
   estimate::Mission mission;
+  estimate::FilterOptions options;
   estimate::ForwardFilter filter;
   estimate::FilterState start;
   estimate::KnotStore knots;
@@ -36,7 +37,7 @@ void forward_21(benchmark::State& state) {
 
 void judged(benchmark::State& state, Eigen::Index draws) {
   const Filtered f(static_cast<int>(state.range(0)));
-  const diagnose::Hypotheses hypotheses(f.mission, diagnose::Grade::kIndustrial, f.recording.truth.states, {});
+  const diagnose::Hypotheses hypotheses(f.mission, f.options, diagnose::Grade::kIndustrial, f.recording.truth.states, {});
   for (auto _ : state)
     benchmark::DoNotOptimize(diagnose::examine(f.mission, f.filter.layout(), f.knots, hypotheses, {.draws = draws}).score);
   state.counters["coefficients"] = static_cast<double>(hypotheses.size());

@@ -99,6 +99,10 @@ struct PairedDifference {
   double mean = 0.0;
   double sd = 0.0;  ///< of the mean
 };
+/// Nothing compared where the outages are not the same ones, or less than two.
+[[nodiscard]] PairedDifference outage_difference(const Fit& before, const Fit& after);
+/// Whether outages drift farther with `after`: by half, and by more than chance has it of their differences (1 %).
+[[nodiscard]] bool drifts_farther(const Fit& before, const Fit& after);
 
 struct Diagnosis {
   std::vector<Finding> findings;
@@ -114,7 +118,7 @@ struct Diagnosis {
   std::vector<TwinStatistic> twins;        ///< of the configured model
   std::vector<TwinStatistic> twins_after;  ///< of the model with what was found
   std::optional<HeldOut> held_out;         ///< where mean effects were found
-  std::vector<std::string> rejected;       ///< found, and given up: worse on held-out blocks
+  std::vector<std::string> rejected;       ///< found, and given up: worse on held-out blocks, or in outages
   std::size_t runs = 0;
   std::vector<estimate::InnovationRecord> innovations_before;
   std::vector<estimate::InnovationRecord> innovations_after;
@@ -138,8 +142,9 @@ struct DiagnosisOptions {
 /// Random effects are taken where their evidence is larger: likelihood less what sizes, onsets and choices cost. Then the
 /// search is made once more with mean effects first; the outcome with the larger evidence is kept and the other one told beside
 /// it where the difference is small. Every effect is put to the test again beside the others. Then what was found is held
-/// against blocks that its sizes were not estimated from, and given up where it explains nothing there; and the recording
-/// against twins of its mission (twin.hpp) by the configured model and by the new one.
+/// against blocks that its sizes were not estimated from, and given up where it explains nothing there; likewise, the worst
+/// first, where with all of it artificial outages drift farther than with nothing; and the recording against twins of its
+/// mission (twin.hpp) by the configured model and by the new one.
 /// @param simulations  the user's own, in place of the twins of the configured model
 [[nodiscard]] Diagnosis diagnose(const MissionInput& input, const DiagnosisOptions& options, const study::Progress& progress,
                                  const std::vector<MissionInput>& simulations = {});

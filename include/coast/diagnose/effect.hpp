@@ -24,7 +24,7 @@ struct Signals {
   Eigen::Vector3d omega;          ///< rate against inertial space, sensor axes, rad/s
   Eigen::Vector3d f;              ///< specific force, sensor axes, m/s^2
   Eigen::Vector3d omega_dot;      ///< angular acceleration over some samples, rad/s^2
-  Eigen::Vector3d vibration;      ///< variance of the specific force over a second about its mean over a tenth, (m/s^2)^2
+  Eigen::Vector3d vibration;      ///< variance of the specific force over a second about its mean over two tenths, (m/s^2)^2
   Eigen::Vector3d coning;         ///< what coning adds to the rate: (dtheta' x dtheta) / (12 dt), rad/s
   double temperature = 0.0;       ///< against its mean over the recording, K
   double temperature_rate = 0.0;  ///< K/s
@@ -43,6 +43,12 @@ struct FixSignals {
   Eigen::Matrix3d C_b_e;
   Eigen::Matrix3d C_n_e;
   [[nodiscard]] double heading() const;  ///< of the body, rad
+};
+
+/// What there is to see where a vehicle neither slides nor lifts.
+struct WheelSignals {
+  Eigen::Vector3d u_b;                       ///< velocity of the constraint's point, body axes, m/s
+  const estimate::NonHolonomic& constraint;  ///< as it is configured
 };
 
 /// Where an effect has its origin, as results name it.
@@ -86,6 +92,9 @@ struct Effect {
   /// Errors of a GNSS position per unit of each axis, 3 x axes, e, m; and of a velocity, m/s.
   std::function<void(const FixSignals&, Columns)> position = {};
   std::function<void(const FixSignals&, Columns)> velocity = {};
+  /// Errors of the velocity to the right and down of a vehicle that neither slides nor lifts, per unit of each axis, 2 x axes,
+  /// m/s.
+  std::function<void(const WheelSignals&, Eigen::Ref<Eigen::Matrix2Xd>)> slip = {};
   /// How the configuration takes coefficients exactly; where absent, they are taken out of the recordings.
   std::function<void(study::Setup&, const Eigen::VectorXd&)> configure = {};
   std::vector<FixedParameter> fixed = {};

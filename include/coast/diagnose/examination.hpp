@@ -83,6 +83,8 @@ struct LargestByChance {
 
 struct Suspicions {
   std::vector<Suspicion> all;  ///< by hypothesis; what cannot be seen at all is left out
+  /// Of which the mission shows nothing that is plausible: they are not looked for, but what is found may look like them.
+  std::vector<Suspicion> implausible;
   LargestByChance chance;
   /// By what chance does as it is known already, where there were no draws.
   void judge(const LargestByChance& by_chance);

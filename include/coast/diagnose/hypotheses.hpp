@@ -45,13 +45,16 @@ class Hypotheses : public estimate::Effects {
   /// Those that need what the recording does not have are left out. @param mission  must outlive the set
   /// @param path  the smoothed motion, ascending, along which effects on fixes are seen; must outlive the set. The filter's own
   /// velocity has in it what the last innovations were, which would be taken for an effect of velocity: a time offset
+  /// @param filter  what it is told of the vehicle; must outlive the set
   /// @param suggested  behind the catalogue's; must outlive the set
-  Hypotheses(const estimate::Mission& mission, Grade grade, const std::vector<record::NavState>& path,
-             const std::vector<EffectPtr>& suggested);
+  Hypotheses(const estimate::Mission& mission, const estimate::FilterOptions& filter, Grade grade,
+             const std::vector<record::NavState>& path, const std::vector<EffectPtr>& suggested);
 
   [[nodiscard]] Eigen::Index size() const override { return static_cast<Eigen::Index>(all_.size()); }
   [[nodiscard]] const std::vector<Hypothesis>& all() const { return all_; }
   [[nodiscard]] const Hypothesis& operator[](Eigen::Index i) const { return all_[static_cast<std::size_t>(i)]; }
+  /// Why an effect is left out; nothing where it is not.
+  [[nodiscard]] const char* why_not_seen(const Effect& effect) const;
   /// What the sensor axes see at a sample.
   [[nodiscard]] Signals signals(const estimate::SampleView& sample) const;
   void add_sensor_errors(const estimate::SampleView& sample, Eigen::Matrix3Xd& gyro_b,
@@ -65,8 +68,11 @@ class Hypotheses : public estimate::Effects {
     Eigen::Index count;
   };
   [[nodiscard]] record::NavState smoothed(const record::NavState& filtered) const;
+  void add_slip(const estimate::MeasurementView& measurement, Eigen::MatrixXd& D) const;
+  void add_fix_errors(const estimate::MeasurementView& measurement, Eigen::MatrixXd& D) const;
 
   const estimate::Mission& mission_;
+  const estimate::FilterOptions& filter_;
   const std::vector<record::NavState>& path_;
   SignalTable signals_;
   std::vector<Hypothesis> all_;

@@ -57,6 +57,9 @@ struct NonHolonomic {
   double yaw = 0.0;
 };
 [[nodiscard]] Linearised non_holonomic(const FilterState& state, const UpdateContext& context, const NonHolonomic& constraint);
+/// d(C_b_v u) by the vehicle's pitch and yaw against the body: columns of m/s per rad, rows y and z.
+/// @param u_b  velocity of the constraint's point, body axes, m/s
+[[nodiscard]] Eigen::Matrix2d slip_by_mounting(double pitch, double yaw, const Eigen::Vector3d& u_b);
 
 /// How member j of a synthetic IMU differs from the members before it, each of which has its own error states:
 ///     mean_j = weighted mean of members 0 .. j-1 over the block

@@ -38,6 +38,7 @@ Effect rate_ramp_accel();
 Effect rate_ramp_gyro();
 Effect temperature_rate_hysteresis_accel();
 Effect temperature_rate_hysteresis_gyro();
+Effect vehicle_mounting();
 Effect vibration_rectification();
 
 /// Calls `take(column, response, cause)` for every pair, in the order of nine_pairs(); of six_pairs() where `off_diagonal`.

@@ -66,3 +66,12 @@ def body_to_plane(yaw, pitch, roll):
     return [[cy * cp, cy * sp * sr - sy * cr, cy * sp * cr + sy * sr],
             [sy * cp, sy * sp * sr + cy * cr, sy * sp * cr - cy * sr],
             [-sp, cp * sr, cp * cr]]
+
+
+def rotation_vector(a, b):
+    """Of the turn from body axes a to body axes b, small, in the axes of either: both body to plane."""
+    skew = [0.0, 0.0, 0.0]
+    for i, j, k in ((2, 1, 0), (0, 2, 1), (1, 0, 2)):
+        skew[k] = 0.5 * sum(a[m][i] * b[m][j] - a[m][j] * b[m][i] for m in range(3))
+    sine = math.sqrt(sum(x * x for x in skew))
+    return [x * (math.asin(sine) / sine if sine > 0.0 else 1.0) for x in skew]

@@ -12,18 +12,24 @@ NAMES = "xyz"
 
 
 class Effect:
-    """`probe`: a size that is small, for sensitivities; an effect without one has a `typical` size for an IMU (its grade's noise) instead.
-    `last`: acts when the noise is in. `relation`: for effects without a name."""
+    """`probe`: a size that is small, for sensitivities; an effect without one has a `typical` size for an IMU (its grade's noise), where
+    a search begins.
+    `last`: acts when the noise is in. `relation`: for effects without a name. `rough`: the vibration that it needs,
+    shaking or nodding. `positive`: has no other sign."""
 
-    def __init__(self, name, sensor, axes, unit, probe=None, sample=None, fix=None, onset=False, typical=None, last=None, relation=None):
+    def __init__(self, name, sensor, axes, unit, probe=None, sample=None, fix=None, onset=False, typical=None, last=None, relation=None,
+                 rough=None, positive=False):
         self.name, self.sensor, self.axes, self.unit, self.probe = name, sensor, axes, unit, probe
         self.sample, self.fix, self.onset = sample, fix, onset
         self.typical, self.last, self.relation = typical, last, relation
+        self.rough, self.positive = rough, positive
 
 
 def label(axis):
     if axis is None:
         return ""
+    if isinstance(axis, str):
+        return axis
     return NAMES[axis] if isinstance(axis, int) else NAMES[axis[0]] + NAMES[axis[1]]
 
 
@@ -52,6 +58,10 @@ def g_sensitivity(s, axis, c):
     s.out_w[axis[0]] += c * s.f[axis[1]]
 
 
+def g2_sensitivity(s, axis, c):
+    s.out_w[axis[0]] += c * s.f[axis[1]] ** 2
+
+
 def quadratic(s, axis, c):
     s.out_f[axis] += c * s.f[axis] ** 2
 
@@ -68,6 +78,37 @@ def accel_temperature(s, axis, c):
     s.out_f[axis] += c * s.temperature
 
 
+def gyro_warming(s, axis, c):
+    s.out_w[axis] += c * s.temperature_rate
+
+
+def accel_warming(s, axis, c):
+    s.out_f[axis] += c * s.temperature_rate
+
+
+def rectification(s, axis, c):
+    s.out_f[axis] += c * s.vibration_variance[axis]
+
+
+def mount_turns(s, axis, c):
+    """The sensors' axes turn by c about one of them: what is measured turns back."""
+    i, j = (axis + 1) % 3, (axis + 2) % 3
+    for measured, true in ((s.out_w, s.w), (s.out_f, s.f)):
+        measured[i] += math.cos(c) * true[i] + math.sin(c) * true[j] - true[i]
+        measured[j] += math.cos(c) * true[j] - math.sin(c) * true[i] - true[j]
+
+
+def earth_is_taken_out(s, axis, c):
+    for i in SINGLE:
+        s.out_w[i] -= c * s.earth_rate[i]
+
+
+def rotations_commute(s, axis, c):
+    """The angle that a sample turned by is more than the integral of its rates: that is what is missing."""
+    for i in SINGLE:
+        s.out_w[i] -= c * (s.turned[i] / s.dt - s.relative_rate[i])
+
+
 def gyro_bias(s, axis, c):
     s.out_w[axis] += c
 
@@ -78,6 +119,10 @@ def accel_bias(s, axis, c):
 
 def gyro_ramp(s, axis, c):
     s.out_w[axis] += c * s.t
+
+
+def accel_ramp(s, axis, c):
+    s.out_f[axis] += c * s.t
 
 
 def size(s, axis, c):
@@ -106,6 +151,15 @@ def clock_runs(fix, axis, c):
     """The IMU's tags grow by 1 + c for every second. The motion is that of the tags' time, so fixes come later in it and faster."""
     fix.valid_at += c * fix.elapsed
     fix.clock_rate += c
+
+
+def smoothed(fix, axis, c):
+    """The mean of the places d before and behind is r + d^2 a / 2."""
+    fix.apart = math.sqrt(2.0 * c)
+
+
+def phase_centre(fix, axis, c):
+    fix.ned[Z] += c * (math.cos(fix.heading) if axis == "cos" else math.sin(fix.heading))
 
 
 def flexure(fix, axis, c):
@@ -204,12 +258,17 @@ EFFECTS = [
     Effect("gyro_misalignment", "gyro", OFF, "rad", 1e-4, sample=gyro_misalignment),
     Effect("accel_misalignment", "accel", OFF, "rad", 1e-4, sample=accel_misalignment),
     Effect("gyro_g_sensitivity", "gyro", ALL, "rad/s/(m/s^2)", 1e-6, sample=g_sensitivity),
+    Effect("gyro_g2_sensitivity", "gyro", ALL, "rad/s/(m/s^2)^2", 1e-7, sample=g2_sensitivity),
     Effect("accel_nonlinearity_quadratic", "accel", SINGLE, "1/(m/s^2)", 1e-5, sample=quadratic),
     Effect("accel_sign_asymmetric_scale", "accel", SINGLE, "1", 1e-4, sample=asymmetric),
     Effect("accel_size_effect", "accel", ALL, "m", 1e-2, sample=size),
     Effect("gyro_temperature_bias", "gyro", SINGLE, "rad/s/K", 1e-7, sample=gyro_temperature),
     Effect("accel_temperature_bias", "accel", SINGLE, "m/s^2/K", 1e-5, sample=accel_temperature),
+    Effect("temperature_rate_hysteresis", "gyro", SINGLE, "rad/s/(K/s)", 1e-5, sample=gyro_warming),
+    Effect("temperature_rate_hysteresis", "accel", SINGLE, "m/s^2/(K/s)", 1e-3, sample=accel_warming),
+    Effect("vibration_rectification", "accel", SINGLE, "1/(m/s^2)", 1e-4, sample=rectification, rough="shaking"),
     Effect("rate_ramp", "gyro", SINGLE, "rad/s^2", 1e-9, sample=gyro_ramp),
+    Effect("rate_ramp", "accel", SINGLE, "m/s^3", 1e-7, sample=accel_ramp),
     Effect("bias_step", "gyro", SINGLE, "rad/s", 1e-5, sample=gyro_bias, onset=True),
     Effect("bias_step", "accel", SINGLE, "m/s^2", 1e-4, sample=accel_bias, onset=True),
     Effect("antenna_mount_slip", "antenna", SINGLE, "m", 0.01, fix=antenna_moves, onset=True),
@@ -218,9 +277,14 @@ EFFECTS = [
     Effect("imu_clock_drift", "clock", [None], "1", 1e-6, sample=clock_sample, fix=clock_runs),
     Effect("body_flexure", "antenna", [X, Y], "s^2", 1e-3, fix=flexure),
     Effect("gravity_disturbance", "gravity", SINGLE, "m/s^2", 1e-4, sample=deflection),
+    Effect("gnss_smoothing_lag", "gnss", [None], "s^2", 1e-3, fix=smoothed, positive=True),
+    Effect("antenna_phase_center_heading_dependent", "antenna", ["cos", "sin"], "m", 1e-3, fix=phase_centre),
+    Effect("imu_mount_rotation", "mount", SINGLE, "rad", 1e-4, sample=mount_turns, onset=True),
+    Effect("earth_rotation_omitted", "gyro", [None], "1", 0.1, sample=earth_is_taken_out),
+    Effect("coning_omitted", "gyro", [None], "1", 0.1, sample=rotations_commute, rough="nodding"),
 ]
 
-# Sizes of 1: the density at frequency zero is that of the white noise (gyro N, accelerometer M, of the grade), and so on.
+# Typical: the density at frequency zero is that of the white noise (gyro N, accelerometer M, of the grade), and so on.
 NOISE = [
     Effect("extra_gauss_markov_bias", "gyro", SINGLE, "rad/s", sample=Wandering(True, None), typical=lambda n: n.gyro / math.sqrt(30.0)),
     Effect("extra_gauss_markov_bias", "accel", SINGLE, "m/s^2", sample=Wandering(False, None), typical=lambda n: n.accel / math.sqrt(30.0)),

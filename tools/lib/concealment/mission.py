@@ -6,7 +6,7 @@ import os
 
 from . import earth
 from .effects import NAMES, label
-from .motion import Motion
+from .motion import Motion, Roughness
 
 # Gyro and accelerometer noise by grade: deg/sqrt(h), turn-on deg/h, ug/sqrt(Hz), turn-on mg.
 GRADES = {"tactical": (0.08, 3.0, 40.0, 1.0), "industrial": (0.2, 40.0, 80.0, 3.0), "consumer": (0.6, 300.0, 200.0, 10.0)}
@@ -26,6 +26,10 @@ class Case:
         self.grade = draw.choice(sorted(GRADES))
         self.place = (math.radians(draw.uniform(-65.0, 65.0)), math.radians(draw.uniform(-180.0, 180.0)), draw.uniform(0.0, 900.0))
         self.motion = Motion(self.kind, duration, STATIC_S, draw)
+
+    def roughen(self, kinds):
+        """No use of velocities then: the turn rate at a fix, and with it the antenna's velocity, is between two samples'."""
+        self.motion.roughness = Roughness(kinds, self.duration, random.Random(f"rough {self.seed}"))
 
 
 class Noise:
@@ -83,42 +87,52 @@ class Truth:
             f = earth.transposed_times(C, [x + 2.0 * y - z for x, y, z in zip(a, coriolis, g_plane)])
             self.states.append((t, at, velocity, C, w, f, a, rate))
         self.origin = origin
+        self.earth_plane = earth_plane
 
 
 def simpson(a, b, c):
     return [(x + 4.0 * y + z) / 6.0 for x, y, z in zip(a, b, c)]
 
 
-def imu_rows(truth, case, concealed, noisy=True):
-    """time, measured rates, forces, temperature"""
+def imu_rows(truth, case, concealed, realisation=0):
+    """time, measured rates, forces, temperature  @param realisation  of what is random in the effects"""
     _, gyro_bias, _, accel_bias = GRADES[case.grade]
     draw = random.Random(f"imu {case.seed}")
     sd_w, sd_f = Noise(case.grade).gyro_sample, Noise(case.grade).accel_sample
     bias_w = [draw.gauss(0.0, math.radians(gyro_bias) / 3600.0) for _ in NAMES]
     bias_f = [draw.gauss(0.0, accel_bias * 9.80665e-3) for _ in NAMES]
     s = Sample()
-    s.dt, s.draw = 1.0 / RATE_HZ, random.Random(f"effect on imu {case.seed}")
+    s.dt, s.draw = 1.0 / RATE_HZ, random.Random(f"effect on imu {case.seed}" + (f" {realisation}" if realisation else ""))
     chosen = random.Random(f"times {case.seed}")
     s.frequency, s.correlation_time = math.exp(chosen.uniform(math.log(0.02), math.log(0.5))), chosen.choice((10.0, 30.0, 100.0))
     n = (len(truth.states) - 1) // 2
     warm = random.Random(f"temperature {case.seed}").uniform(4.0, 12.0)
+    rough = case.motion.roughness
+    roughness = [share for share, _ in rough.share.table([state[0] for state in truth.states[1::2]])] if rough else None
     for k in range(n):
         a, b, c = truth.states[2 * k], truth.states[2 * k + 1], truth.states[2 * k + 2]
         s.t = c[0]
         s.w, s.f = simpson(a[4], b[4], c[4]), simpson(a[5], b[5], c[5])
         s.alpha = [(y - x) * RATE_HZ for x, y in zip(a[4], c[4])]
         s.plane_axes = b[3]
+        s.earth_rate = earth.transposed_times(b[3], truth.earth_plane)
+        if rough:
+            shaking = rough.shaking(b[0], roughness[k])
+            s.vibration_variance = [(rough.shakes * roughness[k]) ** 2] * 3
+            s.f = [x + y for x, y in zip(s.f, shaking)]
+            s.relative_rate = simpson(a[7], b[7], c[7])
+            s.turned = earth.rotation_vector(a[3], c[3])
         s.speed = math.sqrt(sum(v * v for v in b[2]))
         s.acceleration_b = earth.transposed_times(b[3], b[6])
         s.temperature = warm * (1.0 - math.exp(-s.t / 200.0)) + 2.0 * math.sin(s.t / 90.0)
+        s.temperature_rate = warm / 200.0 * math.exp(-s.t / 200.0) + 2.0 / 90.0 * math.cos(s.t / 90.0)
         s.out_w, s.out_f = list(s.w), list(s.f)
         for effect, axis, size, onset in concealed:
             if effect.sample and s.t > onset:
                 effect.sample(s, axis, size)
-        if noisy:
-            for i in range(3):
-                s.out_w[i] += bias_w[i] + draw.gauss(0.0, sd_w)
-                s.out_f[i] += bias_f[i] + draw.gauss(0.0, sd_f)
+        for i in range(3):
+            s.out_w[i] += bias_w[i] + draw.gauss(0.0, sd_w)
+            s.out_f[i] += bias_f[i] + draw.gauss(0.0, sd_f)
         for effect, axis, size, onset in concealed:
             if effect.last and s.t > onset:
                 effect.last(s, axis, size)
@@ -129,32 +143,42 @@ class Fix:
     pass
 
 
-def fix_rows(truth, case, concealed):
+def antenna_at(truth, index, lever_arm):
+    """Position and velocity in the plane at half a sample's steps since the start."""
+    index = min(max(0.0, index), len(truth.states) - 1.001)
+    i = int(index) & ~1
+    state = truth.states[i]
+    dt = (index - i) * 0.5 / RATE_HZ
+    velocity = [v + dt * a for v, a in zip(state[2], state[6])]
+    p = [q + dt * (v + 0.5 * dt * a) for q, v, a in zip(state[1], state[2], state[6])]
+    near, behind, share = truth.states[int(index)], truth.states[int(index) + 1], index - int(index)
+    moved = earth.cross([(1.0 - share) * x + share * y for x, y in zip(near[7], behind[7])], lever_arm)
+    arm = [x + share * 0.5 / RATE_HZ * y for x, y in zip(lever_arm, moved)]
+    return ([x + y for x, y in zip(p, earth.times(near[3], arm))],
+            [x + y for x, y in zip(velocity, earth.times(near[3], moved))])
+
+
+def fix_rows(truth, case, concealed, realisation=0):
     """tag, latitude, longitude, height, velocity in the plane of the antenna"""
     draw = random.Random(f"gnss {case.seed}")
     step = 2.0 * RATE_HZ
     fix = Fix()
-    fix.dt, fix.sd, fix.draw = 1.0 / GNSS_HZ, GNSS_SD, random.Random(f"effect on gnss {case.seed}")
+    fix.dt, fix.sd, fix.draw = 1.0 / GNSS_HZ, GNSS_SD, random.Random(f"effect on gnss {case.seed}" + (f" {realisation}" if realisation else ""))
     fix.wandering = [fix.draw.gauss(0.0, 1.0) for _ in NAMES]
     for k in range(int(case.duration * GNSS_HZ) - 1):
         fix.elapsed = (k + 0.37) / GNSS_HZ
-        fix.valid_at, fix.lever_arm, fix.ned, fix.clock_rate = fix.elapsed, list(LEVER_ARM), [0.0, 0.0, 0.0], 1.0
+        fix.valid_at, fix.lever_arm, fix.ned, fix.clock_rate, fix.apart = fix.elapsed, list(LEVER_ARM), [0.0, 0.0, 0.0], 1.0, 0.0
         state = truth.states[min(len(truth.states) - 1, round(fix.elapsed * step))]
+        fix.heading = math.atan2(state[3][1][0], state[3][0][0])
         fix.acceleration_b = earth.transposed_times(state[3], state[6])
         for effect, axis, size, onset in concealed:
             if effect.fix and fix.elapsed > onset:
                 effect.fix(fix, axis, size)
-        index = min(max(0.0, fix.valid_at * step), len(truth.states) - 1.001)
-        i = int(index) & ~1
-        state = truth.states[i]
-        dt = (index - i) / step
-        velocity = [v + dt * a for v, a in zip(state[2], state[6])]
-        p = [q + dt * (v + 0.5 * dt * a) for q, v, a in zip(state[1], state[2], state[6])]
-        C = state[3]
-        moved = earth.cross(state[7], fix.lever_arm)
-        arm = [x + dt * y for x, y in zip(fix.lever_arm, moved)]
-        p = [x + y for x, y in zip(p, earth.times(C, arm))]
-        velocity = [x + y for x, y in zip(velocity, earth.times(C, moved))]
+        p, velocity = antenna_at(truth, fix.valid_at * step, fix.lever_arm)
+        if fix.apart:
+            before, _ = antenna_at(truth, (fix.valid_at - fix.apart) * step, fix.lever_arm)
+            behind, _ = antenna_at(truth, (fix.valid_at + fix.apart) * step, fix.lever_arm)
+            p = [0.5 * (x + y) for x, y in zip(before, behind)]
         r = [x + y for x, y in zip(truth.origin, earth.times(truth.plane, p))]
         lat, lon, _ = earth.geodetic(r)
         local = earth.ned_to_ecef(lat, lon)
@@ -164,15 +188,15 @@ def fix_rows(truth, case, concealed):
         yield START_SOW + fix.elapsed, earth.geodetic(r), [v + draw.gauss(0.0, sd) for v, sd in zip(v_n, VELOCITY_SD)]
 
 
-def write(folder, case, truth, concealed):
+def write(folder, case, truth, concealed, realisation=0):
     os.makedirs(folder, exist_ok=True)
     with open(f"{folder}/imu.csv", "w", encoding="ascii") as file:
         file.write("time_s,gyro_x_radps,gyro_y_radps,gyro_z_radps,accel_x_mps2,accel_y_mps2,accel_z_mps2,temperature_degC\n")
-        for t, w, f, temperature in imu_rows(truth, case, concealed):
+        for t, w, f, temperature in imu_rows(truth, case, concealed, realisation):
             file.write("%.6f,%.12f,%.12f,%.12f,%.10f,%.10f,%.10f,%.3f\n" % (t, *w, *f, temperature))
     with open(f"{folder}/gnss.csv", "w", encoding="ascii") as file:
         file.write("time_s,lat_deg,lon_deg,height_m,sdn_m,sde_m,sdd_m,vn_mps,ve_mps,vd_mps,sdvn_mps,sdve_mps,sdvd_mps\n")
-        for t, (lat, lon, height), v in fix_rows(truth, case, concealed):
+        for t, (lat, lon, height), v in fix_rows(truth, case, concealed, realisation):
             file.write("%.6f,%.11f,%.11f,%.5f,%g,%g,%g,%.6f,%.6f,%.6f,%g,%g,%g\n"
                        % (t, math.degrees(lat), math.degrees(lon), height, *GNSS_SD, *v, *VELOCITY_SD))
     arw, gyro_bias, vrw, accel_bias = GRADES[case.grade]
@@ -188,7 +212,7 @@ accel:
     with open(f"{folder}/run.yaml", "w", encoding="ascii") as file:
         file.write(f"""schema: coast.run/1
 imu: {{file: imu.csv, format: csv, gps_week: {WEEK}, error_model: error_model.yaml, lever_arm_m: [{LEVER_ARM[0]}, {LEVER_ARM[1]}, {LEVER_ARM[2]}]}}
-gnss: {{file: gnss.csv, format: csv, gps_week: {WEEK}, time_offset_s: 0}}
+gnss: {{file: gnss.csv, format: csv, gps_week: {WEEK}, time_offset_s: 0{", use_velocity: false" if case.motion.roughness else ""}}}
 """)
 
 

@@ -45,10 +45,40 @@ VEHICLES = {
 }
 
 
+class Roughness:
+    """Stretches of rough ground, between 0 and 1 over time: there the body nods and rolls, a quarter of a period apart, or shakes."""
+
+    def __init__(self, kinds, duration, draw):
+        self.nods = math.radians(0.4) if "nodding" in kinds else 0.0  # both ways
+        self.shakes = 1.5 if "shaking" in kinds else 0.0  # m/s^2, root mean square along every axis
+        self.share = Steps(0.0)
+        self.rate = 2.0 * math.pi * draw.uniform(6.0, 9.0)
+        # 15 to 45 Hz: what a second shows of it does not depend on where it begins.
+        self.waves = [[(2.0 * math.pi * draw.uniform(15.0, 45.0), draw.uniform(0.0, 6.3)) for _ in range(6)] for _ in range(3)]
+        t = draw.uniform(40.0, 60.0)
+        while t < duration - 60.0:
+            lasts = draw.uniform(20.0, 60.0)
+            self.share.change(t, 1.0, 1.0)
+            self.share.change(t + lasts, 1.0, -1.0)
+            t += lasts + draw.uniform(20.0, 60.0)
+
+    def nodding(self, times):
+        """((pitch, its rate), (roll, its rate)) at ascending times."""
+        for t, (share, change) in zip(times, self.share.table(times)):
+            s, c = math.sin(self.rate * t), math.cos(self.rate * t)
+            yield tuple((self.nods * share * a, self.nods * (change * a + share * self.rate * b)) for a, b in ((s, c), (c, -s)))
+
+    def shaking(self, t, share):
+        """What a sample has of it, by axis."""
+        size = self.shakes * share * math.sqrt(2.0 / 6.0)
+        return [size * sum(math.sin(w * t + p) for w, p in waves) for waves in self.waves]
+
+
 class Motion:
     """Speed along the body's x axis, heading, pitch and roll over time."""
 
     def __init__(self, kind, duration, static, draw):
+        self.roughness = None
         v = VEHICLES[kind]
         self.speed, self.yaw = Steps(0.0), Steps(draw.uniform(-math.pi, math.pi))
         self.pitch, self.roll = Steps(0.0), Steps(0.0)
@@ -75,4 +105,9 @@ class Motion:
             t += turn_s + 2.5 + draw.uniform(0.0, 6.0)
 
     def table(self, times):
-        return zip(self.speed.table(times), self.yaw.table(times), self.pitch.table(times), self.roll.table(times))
+        pitch, roll = self.pitch.table(times), self.roll.table(times)
+        if self.roughness:
+            nodding = list(self.roughness.nodding(times))
+            pitch = [(a + n[0][0], b + n[0][1]) for (a, b), n in zip(pitch, nodding)]
+            roll = [(a + n[1][0], b + n[1][1]) for (a, b), n in zip(roll, nodding)]
+        return zip(self.speed.table(times), self.yaw.table(times), pitch, roll)
