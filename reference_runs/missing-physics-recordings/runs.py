@@ -41,6 +41,12 @@ def car_with(effect, axis, size, onset=0.0):
     return make
 
 
+def rolling(mounting):
+    """The car is told that it neither slides nor lifts, and where it rolls to. The published mounting is the opposite rotation."""
+    wheels = "vehicle: {kind: car, mounting_pitch_deg: %g, mounting_yaw_deg: %g, mounting_sd_deg: 0}\n" % mounting
+    return lambda out: config(CAR, [("outages:", wheels + "outages:")], FREE)
+
+
 def rover(run):
     return lambda out: config("rc-rover-mimu", [("h_imu", f"{run}_imu"), ("h_rtk", f"{run}_rtk"), ("time_offset_s: 0.2", "time_offset_s: 0")], FREE)
 
@@ -49,6 +55,7 @@ RUNS = {
     "as-is/car-drive-0708": car(), "as-is/rc-rover-mimu": lambda out: config("rc-rover-mimu"),
     "as-is/quadrotor-mimu": lambda out: config("quadrotor-mimu"),
     "falsified/lever-arm-0.3": car(("lever_arm_m: [0, -0.05, 0]", "lever_arm_m: [0.3, -0.05, 0]")),
+    "falsified/mounting-zero": rolling((0.0, 0.0)), "as-is/car-drive-0708-mounting": rolling((6.79, -5.35)),
     "falsified/time-offset-0.05": car(("time_offset_s: -0.1", "time_offset_s: -0.05")),
     "concealed/accel-scale-x-5-percent": car_with("accel_scale_factor", "x", 0.05),
     "concealed/gyro-step-z": car_with("bias_step", "z", 0.01, 250.0),
@@ -66,7 +73,7 @@ def one(name, make, out):
     if not os.path.exists(kept):
         os.makedirs(folder, exist_ok=True)
         with open(f"{folder}/run.yaml", "w") as file:
-            file.write(re.sub(r"\n(outages|reference|vehicle|output):[^\n]*(\n  [^\n]*)*", "", make(folder)))
+            file.write(re.sub(r"\n(outages|reference|output):[^\n]*(\n  [^\n]*)*", "", make(folder)))
         subprocess.run([COAST, "diagnose", f"{folder}/run.yaml", "--out", f"{folder}/diagnosis", "--twins", "0", "--threads", "1", "--quiet"], check=True)
     with open(kept) as file:
         d = json.load(file)
