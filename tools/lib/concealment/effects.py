@@ -290,7 +290,7 @@ NOISE = [
     Effect("extra_gauss_markov_bias", "accel", SINGLE, "m/s^2", sample=Wandering(False, None), typical=lambda n: n.accel / math.sqrt(30.0)),
     Effect("flicker_noise", "gyro", SINGLE, "rad/s", sample=Wandering(True, OCTAVES), typical=lambda n: n.gyro / math.sqrt(100.0)),
     Effect("dynamics_dependent_noise", "gyro", SINGLE, "sqrt(s)", last=gyro_noise_of_turning, typical=lambda n: n.gyro / 0.3),
-    Effect("saturation", "gyro", [Z], "rad/s", last=gyro_clips, typical=lambda n: 0.5),
+    Effect("saturation", "gyro", [Z], "rad/s", last=gyro_clips),
     Effect("quantisation", "gyro", SINGLE, "rad/s", last=gyro_rounds, typical=lambda n: n.gyro_sample),
     Effect("quantisation", "accel", SINGLE, "m/s^2", last=accel_rounds, typical=lambda n: n.accel_sample),
     Effect("gnss_sd_optimistic", "gnss", [None], "1", fix=fix_noise, typical=lambda n: 0.1),

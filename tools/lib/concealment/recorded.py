@@ -19,10 +19,24 @@ def places(text, header):
     return result
 
 
+def needs_more(effect, axis, size):
+    """What an effect needs that rates and forces of a recording do not tell: motion, temperature, vibration. Nothing: None."""
+    s = mission.Sample()
+    s.t, s.dt, s.draw = 0.01, 0.01, random.Random("recorded")
+    s.w, s.f, s.alpha, s.out_w, s.out_f = ([0.0] * 3 for _ in range(5))
+    try:
+        for act in (effect.sample, effect.last):
+            if act:
+                act(s, axis, size)
+    except AttributeError as error:
+        return error.name.replace("_", " ")
+    return None
+
+
 def conceal(source, target, columns, effect, axis, size, onset, gyro_unit=1.0):
     """Writes the recording with the effect from `onset` s after its start on. A shift of time moves the IMU's tags."""
     s = mission.Sample()
-    s.draw, s.speed, s.temperature = random.Random("recorded"), 0.0, 0.0
+    s.draw = random.Random("recorded")
     start, before, before_w = None, None, None
     with opened(source, "r") as lines, opened(target, "w") as out:
         place = None
