@@ -6,12 +6,32 @@ import math
 import os
 import sys
 
+DETECTABLE = math.sqrt(17.07)  # sigmas of the smallest detectable size: alpha 0.1 %, power 80 % (Baarda)
 
 
 def same_axis(effect, truth):
-    if effect["name"].startswith("gnss_sd") or effect["name"].startswith("gnss_corr"):
+    if truth["axis"] == "horizontal":
         return True  # of all axes alike
     return effect["axis"] == truth["axis"]
+
+
+def power(case):
+    """Probability that an effect of this size exceeds the threshold in use, which heeds all effects and onsets."""
+    size, threshold = DETECTABLE * case["key"]["strength"], math.sqrt(case["diagnosis"]["threshold"])
+    return 0.5 * (math.erfc((threshold - size) / math.sqrt(2.0)) + math.erfc((threshold + size) / math.sqrt(2.0)))
+
+
+def expected(powers):
+    """How many of so many cases are detected: the mean, and what holds with 99 %, exactly."""
+    chances = [1.0]
+    for p in powers:
+        chances = [(1.0 - p) * none + p * one for none, one in zip(chances + [0.0], [0.0] + chances)]
+    below, low, high = 0.0, None, None
+    for count, chance in enumerate(chances):
+        below += chance
+        low = count if low is None and below > 0.005 else low
+        high = count if high is None and below >= 0.995 else high
+    return {"mean": sum(powers) / len(powers), "interval_99": [low / len(powers), high / len(powers)]}
 
 
 def found_as(effect, truth):
@@ -35,10 +55,10 @@ def score(truth, effects):
     s["held_out"] = min(gains) > 0.0 if gains else None
     if truth.get("relation"):
         s["relation"] = first.get("relation") in (truth["relation"], truth["relation"].replace("omega*", f'omega_{truth["axis"]}*'))
-    for e in effects:
+    for e in sorted(effects, key=lambda e: e["axis"] != truth["axis"]):
         if found_as(e, truth):
             p = e["parameters"][0]
-            if p.get("std"):
+            if p.get("std") and e["axis"] == truth["axis"]:
                 size = abs(truth["value"]) if e["name"] == "harmonic_disturbance" else truth["value"]
                 s["deviation"] = (p["value"] - size) / p["std"]
             if truth["t_start_s"] is not None:
@@ -92,11 +112,14 @@ def main():
                                              "of_75": sum(bool(c["diagnosis"]["effects"]) for k, c in cases.items() if k < 300 and k % 4 == 0),
                                              "nominal_and_two_standard_errors": 0.05 + 2.0 * math.sqrt(0.05 * 0.95 / max(1, len(clean)))}}
     groups = {"named": range(300), "noise": range(2000, 2100), "relations": range(2100, 2200)}
-    for group, seeds in groups.items():
-        scored = [(c["key"]["strength"], score(c["key"]["effects"][0], c["diagnosis"]["effects"]))
-                  for k, c in sorted(cases.items()) if k in seeds and c["key"]["effects"]]
+    for group, numbers in groups.items():
+        here = [c for k, c in sorted(cases.items()) if k in numbers and c["key"]["effects"]]
+        scored = [(c["key"]["strength"], score(c["key"]["effects"][0], c["diagnosis"]["effects"])) for c in here]
         result[group] = {"strengths": {f"{strength:g}": table([s for k, s in scored if k == strength])
                                        for strength in sorted({k for k, _ in scored})}, "effects": by_effect(scored)}
+        result[group]["all"] = table([s for _, s in scored])
+        if group == "named":
+            result[group]["expected_at_1"] = expected([power(c) for c in here if c["key"]["strength"] == 1.0])
     pairs = [pair(c) for k, c in sorted(cases.items()) if k >= 2200]
     result["pairs"] = {key: share(p[key] for p in pairs) for key in ("both", "one", "nothing_else")}
     json.dump(result, sys.stdout, indent=1)

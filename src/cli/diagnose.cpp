@@ -71,6 +71,7 @@ void diagnose(const std::filesystem::path& run_yaml, const DiagnoseOptions& choi
     simulation = SimulationCheck{choice.simulation.string(), diagnose::diagnose(simulations.front(), {.twins = 0}, progress)};
   diagnose::DiagnosisOptions search{.twins = choice.twins};
   if (const std::optional<double> shift = recordings.time_shift_s) search.time_offset_s = -*shift;
+  if (recordings.reference) search.reference = {&*recordings.reference, config.reference_lever_arm_b};
   const diagnose::Diagnosis diagnosis = diagnose::diagnose(input, search, progress, simulations);
   line.clear();
   const std::filesystem::path error_model = std::filesystem::absolute(out / "error_model.diagnosed.yaml");

@@ -67,7 +67,10 @@ Json finding_json(const diagnose::Finding& f, double start_s, double end_s) {
 Json noise_json(const diagnose::NoiseFinding& f, double start_s, double end_s) {
   Json j = {{"name", f.name}, {"sensor", f.sensor}, {"axis", f.axis}, {"t_start_s", start_s}, {"t_end_s", end_s}};
   j["parameters"] = Json::array({{{"name", f.parameter}, {"value", f.value}, {"std", f.sd}, {"unit", f.unit}}});
-  if (f.time_s > 0.0) j["parameters"].push_back(parameter_json("correlation_time", f.time_s, "s"));
+  if (f.time_s > 0.0) {
+    j["parameters"].push_back(parameter_json("correlation_time", f.time_s, "s"));
+    if (f.time_sd_s > 0.0) j["parameters"].back()["std"] = f.time_sd_s;
+  }
   j["delta_log_likelihood"] = f.delta_log_likelihood;
   j["p_value"] = f.p_value;
   j["explanation"] = explanation(f);
@@ -91,7 +94,7 @@ std::string explanation(const diagnose::NoiseFinding& f) {
   std::string text = fmt::format("{} {}: {} = {:.3g}", f.meaning, f.equation, f.parameter, f.value);
   if (f.sd > 0.0) text += fmt::format(" +- {:.2g}", f.sd);
   text += fmt::format(" {}", f.unit);
-  text += f.time_s > 0.0 ? fmt::format(", T about {:g} s.", f.time_s) : ".";
+  text += f.time_s > 0.0 ? fmt::format(", T about {:.2g} s.", f.time_s) : ".";
   return text + other_readings(f.alternatives, f.separating_manoeuvre);
 }
 
@@ -172,7 +175,7 @@ std::string diagnosis_json(const diagnose::Diagnosis& d, const diagnose::Mission
   Json j;
   j["schema"] = "coast.diagnosis/1";
   j["mismatch"] = !d.findings.empty() || !d.noise.empty();
-  j["reference_used"] = false;
+  j["reference_used"] = d.reference_used;
   j["effects"] = effects_json(d, start, end, simulation);
   if (simulation)
     j["simulation"] = {{"source", simulation->source}, {"effects", effects_json(simulation->diagnosis, start, end, {})}};

@@ -45,25 +45,36 @@ std::vector<report::Tile> diagnosis_tiles(const Diagnosis& d) {
   return tiles;
 }
 
+std::string sized(double value, double sd, std::string_view unit) {
+  const std::string of = unit == "1" ? std::string() : fmt::format(" {}", unit);
+  return sd > 0.0 ? fmt::format("{:.3g} +- {:.2g}{}", value, sd, of) : fmt::format("{:.3g}{}", value, of);
+}
+
+std::string when(const diagnose::Finding& f) {
+  if (!f.from) return "always";
+  const std::string begin = fmt::format("{:.1f} +- {:.1f}", f.from->sow(), f.from_sd_s);
+  return f.to ? fmt::format("{} to {:.1f}", begin, f.to->sow()) : fmt::format("from {}", begin);
+}
+
 report::Table finding_table(const Diagnosis& d) {
   report::Table table;
   table.id = "findings";
   table.title = "Found, the likeliest first";
   table.caption =
       "Value: what the recording has beyond the configured model (lever arm: true minus configured; sensors: measured minus "
-      "true). Gain: logarithm of the likelihood with the effect over that without it, as runs have it.";
-  table.columns = {
-      {"effect", "", false}, {"sensor", "", false}, {"axis", "", false}, {"from", "s of week"}, {"to", "s of week"},
-      {"value", ""},         {"sigma", ""},         {"unit", "", false}, {"gain", ""},          {"p", ""}};
-  const auto time = [](const std::optional<geo::GpsTime>& t) { return t ? fmt::format("{:.1f}", t->sow()) : std::string(); };
+      "true). Gain: logarithm of the likelihood with the effect over that without it, as runs have it; held out: on blocks "
+      "that "
+      "its size was not estimated from.";
+  table.columns = {{"effect", "", false}, {"sensor", "", false}, {"axis", "", false}, {"when, s of week", "", false},
+                   {"value", "", false},  {"gain", ""},          {"held out", ""},    {"p", ""}};
   for (const diagnose::Finding& f : d.findings)
-    table.rows.push_back(
-        cells({std::string(f.hypothesis.effect->name), std::string(diagnose::name(f.hypothesis.effect->site)),
-               f.hypothesis.axis_name(), time(f.from), time(f.to), fmt::format("{:.3g}", f.value), fmt::format("{:.2g}", f.sd),
-               std::string(f.hypothesis.effect->unit), number(f.delta_log_likelihood), fmt::format("{:.1g}", f.p_value)}));
+    table.rows.push_back(cells({std::string(f.hypothesis.effect->name), std::string(diagnose::name(f.hypothesis.effect->site)),
+                                f.hypothesis.axis_name(), when(f), sized(f.value, f.sd, f.hypothesis.effect->unit),
+                                number(f.delta_log_likelihood), f.held_out_gain ? number(*f.held_out_gain) : std::string(),
+                                fmt::format("{:.1g}", f.p_value)}));
   for (const diagnose::NoiseFinding& f : d.noise)
-    table.rows.push_back(cells({f.name, f.sensor, f.axis, "", "", fmt::format("{:.3g}", f.value), fmt::format("{:.2g}", f.sd),
-                                f.unit, number(f.delta_log_likelihood), fmt::format("{:.1g}", f.p_value)}));
+    table.rows.push_back(cells({f.name, f.sensor, f.axis, "", sized(f.value, f.sd, f.unit), number(f.delta_log_likelihood), "",
+                                fmt::format("{:.1g}", f.p_value)}));
   return table;
 }
 

@@ -26,10 +26,53 @@ void add_recording(const std::vector<TwinStatistic>& twins, const char* label, r
   if (!x.empty()) plot.points.push_back({.label = label, .series = curve(x, y), .tone = tone, .radius_px = 4.0});
 }
 
-report::Panel twin_panel(const diagnose::Diagnosis& d) {
+bool is_of_a_part(const TwinStatistic& t) {
+  return t.stretch.has_value();
+}
+
+std::vector<TwinStatistic> of_the_whole(std::vector<TwinStatistic> twins) {
+  std::erase_if(twins, is_of_a_part);
+  return twins;
+}
+
+/// Part by part of the mission.
+report::Panel epoch_panel(const diagnose::Diagnosis& d) {
+  report::Panel panel =
+      report::time_panel("twin-epochs", "When: NIS by tenths of the mission", "",
+                         "Squared innovations over their variance. Inside the band the model tells what the recording shows.");
+  std::vector<double> x, middle, half;
+  const auto line_of = [&](const std::vector<TwinStatistic>& twins) {
+    std::vector<double> y;
+    x.clear();
+    for (const TwinStatistic& t : twins) {
+      if (!is_of_a_part(t)) continue;
+      for (const double at : {t.stretch->from_s, t.stretch->to_s}) {
+        x.push_back(at);
+        y.push_back(t.real);
+      }
+    }
+    return y;
+  };
+  for (const TwinStatistic& t : d.twins)
+    if (is_of_a_part(t))
+      for (int end = 0; end < 2; ++end) {
+        middle.push_back(0.5 * (t.q05 + t.q95));
+        half.push_back(0.5 * (t.q95 - t.q05));
+      }
+  const std::vector<double> before = line_of(d.twins);
+  report::Line& twins = report::add_line(panel.plot(), "twins", curve(x, middle, half), report::Tone::kMuted);
+  twins.band_label = "5 to 95 %";
+  report::add_line(panel.plot(), d.twins_after.empty() ? "recording" : "recording, configured model", curve(x, before),
+                   report::Tone::kWarn);
+  const std::vector<double> after = line_of(d.twins_after);
+  if (!after.empty()) report::add_line(panel.plot(), "with what was found", curve(x, after), report::Tone::kGood);
+  return panel;
+}
+
+report::Panel twin_panel(const std::vector<TwinStatistic>& before, const std::vector<TwinStatistic>& after) {
   report::Panel panel;
   panel.id = "twin-figures";
-  panel.title = "Figures of the recording, from their twins' median";
+  panel.title = "Where: figures of the recording, from their twins' median";
   panel.caption =
       "In halves of the distance between the twins' 5 % and 95 %. Inside the boxes' whiskers the model tells what the "
       "recording shows.";
@@ -39,15 +82,15 @@ report::Panel twin_panel(const diagnose::Diagnosis& d) {
   plot.x.unit = "spreads";
   constexpr double kQuartile = 0.41;  // of the 5 and 95 % points, for a normal distribution
   report::Boxes boxes{.label = "twins", .boxes = {}, .tone = report::Tone::kMuted};
-  for (std::size_t i = 0; i < d.twins.size(); ++i) {
+  for (std::size_t i = 0; i < before.size(); ++i) {
     const double row = -static_cast<double>(i);
-    plot.y.ticks.push_back({row, d.twins[i].name});
+    plot.y.ticks.push_back({row, before[i].name});
     boxes.boxes.push_back({row, -1.0, -kQuartile, 0.0, kQuartile, 1.0});
   }
   plot.boxes.push_back(std::move(boxes));
-  add_recording(d.twins, d.twins_after.empty() ? "recording" : "recording, configured model", report::Tone::kWarn, plot);
-  add_recording(d.twins_after, "with what was found", report::Tone::kGood, plot);
-  plot.height_px = 90 + 24 * static_cast<int>(d.twins.size());
+  add_recording(before, after.empty() ? "recording" : "recording, configured model", report::Tone::kWarn, plot);
+  add_recording(after, "with what was found", report::Tone::kGood, plot);
+  plot.height_px = 90 + 24 * static_cast<int>(before.size());
   return panel;
 }
 
@@ -75,7 +118,8 @@ report::Section twin_section(const diagnose::Diagnosis& d, const std::optional<S
           : std::string(
                 "Recordings of the same motion, simulated as the model says and run through the same steps. p: that "
                 "any figure of a twin lies as far out by chance.");
-  section.panels.push_back(twin_panel(d));
+  section.panels.push_back(epoch_panel(d));
+  section.panels.push_back(twin_panel(of_the_whole(d.twins), of_the_whole(d.twins_after)));
   section.tables.push_back(twin_table("twins-before", "Of the configured model", d.twins));
   if (!d.twins_after.empty())
     section.tables.push_back(twin_table("twins-after", "Of the model with what was found", d.twins_after));

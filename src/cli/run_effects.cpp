@@ -24,8 +24,7 @@ diagnose::NamedEffect named_effect(const Node& item) {
   const auto add = [&](const auto& effect) {
     if (std::ranges::find(names, effect.name) == names.end()) names.push_back(effect.name);
   };
-  for (const diagnose::Effect& effect : diagnose::catalogue())
-    if (!effect.needs_reference) add(effect);
+  for (const diagnose::Effect& effect : diagnose::catalogue()) add(effect);
   for (const diagnose::NoiseEffect& effect : diagnose::noise_catalogue())
     if (effect.level) add(effect);
   for (const diagnose::SampleEffect& effect : diagnose::sample_catalogue()) add(effect);
@@ -72,6 +71,8 @@ std::vector<diagnose::NamedEffect> read_effects(const Node& list) {
     diagnose::NamedEffect one = named_effect(item);
     const auto from = item.find("start_s");
     const auto to = item.find("end_s");
+    if ((from || to) && one.effect != nullptr && one.effect->needs_reference)
+      throw item.error("an instant", "none: the base stays where it is");
     if (from && one.effect == nullptr) throw from->error("an instant", "none: noise and converters are the same all the time");
     if ((from || to) && one.effect != nullptr && one.effect->slip)
       throw item.error("an instant", fmt::format("none: {} is configured for the whole mission", one.effect->name));

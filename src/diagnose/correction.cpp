@@ -82,6 +82,13 @@ void correct_fixes(const std::vector<Taken>& taken, const Hypotheses& hypotheses
   }
 }
 
+/// The base by less along north, east or down: fixes and a start that is known in its frame follow.
+void move_base(MissionInput& input, Eigen::Index axis, double offset) {
+  const auto move = [&](Eigen::Vector3d& r_e) { r_e -= offset * geo::C_n_e(geo::geodetic_from_ecef(r_e)).col(axis); };
+  for (record::GnssFix& fix : input.gnss.fixes) move(fix.r_ea_e);
+  if (input.setup.start) move(input.setup.start->nav.r_eb_e);
+}
+
 }  // namespace
 
 MissionInput without(const std::vector<Taken>& taken, const MissionInput& input, const Hypotheses& hypotheses,
@@ -109,6 +116,8 @@ MissionInput without(const std::vector<NamedEffect>& effects, const MissionInput
   MissionInput input = recorded;
   for (const NamedEffect& one : effects)
     if (one.sample != nullptr) one.sample->model(input, one.sample->site, static_cast<int>(one.axis), one.value);
+  for (const NamedEffect& one : effects)
+    if (one.effect != nullptr && one.effect->needs_reference) move_base(input, one.axis, one.value);
   std::vector<EffectPtr> suggested;
   for (const NamedEffect& one : effects)
     if (one.suggested) suggested.push_back(one.suggested);
@@ -117,7 +126,7 @@ MissionInput without(const std::vector<NamedEffect>& effects, const MissionInput
   const std::vector<Hypothesis>& all = run.hypotheses().all();
   std::vector<Taken> taken;
   for (const NamedEffect& one : effects) {
-    if (one.effect == nullptr) continue;
+    if (one.effect == nullptr || one.effect->needs_reference) continue;
     const auto h = std::ranges::find_if(all, [&](const Hypothesis& x) { return x.effect == one.effect && x.axis == one.axis; });
     if (h == all.end())
       throw InputError(

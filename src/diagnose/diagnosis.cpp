@@ -9,6 +9,7 @@
 
 #include "coast/diagnose/twin.hpp"
 #include "coast/simulate/random.hpp"
+#include "reference_offset.hpp"
 #include "search.hpp"
 #include "statistics.hpp"
 #include "verification.hpp"
@@ -127,12 +128,16 @@ Diagnosis diagnose(const MissionInput& input, const DiagnosisOptions& options, c
     further_runs = other.search->runs();
   }
   if (twins > 0 && best.search->has_found_anything()) after = compared(*best.search, {});
+  std::optional<ReferenceOffset> offset;
+  if (options.reference) offset = offset_from(*options.reference, best.search->run().path());
   Diagnosis result = best.search->finish();
   result.runs += further_runs;
   result.twins = std::move(before);
   result.twins_after = std::move(after);
   result.held_out = best.held_out;
   result.rejected = std::move(best.rejected);
+  if (offset) tell_offset(*offset, result);
+  result.reference_used = offset.has_value();
   return result;
 }
 

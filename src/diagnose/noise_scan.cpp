@@ -100,7 +100,7 @@ FittedEffect fitted_effect(const AddedNoise& from, const MissionInput& input, co
     y = ahead;
     ahead = gain_at(up ? x + kStep : x - kStep);
   }
-  FittedEffect fitted{from, kStep, y};
+  FittedEffect fitted{.noise = from, .log_sd = kStep, .gain = y};
   const double curvature = (2.0 * y - low - high) / (kStep * kStep);
   if (curvature > 0.0) {
     fitted.log_sd = 1.0 / std::sqrt(curvature);

@@ -39,8 +39,9 @@ struct NoiseSuspicions {
 /// A random effect with the variance that makes the recording likeliest.
 struct FittedEffect {
   AddedNoise noise;
-  double log_sd = 0.0;  ///< of the root
-  double gain = 0.0;    ///< logarithm of the likelihood ratio against none
+  double log_sd = 0.0;       ///< of the root
+  double log_time_sd = 0.0;  ///< of the correlation time; 0: not known
+  double gain = 0.0;         ///< logarithm of the likelihood ratio against none
 };
 /// @param input  of the run, which has the log-likelihood `without`  @param layout  of its filter
 [[nodiscard]] FittedEffect fitted_effect(const AddedNoise& from, const MissionInput& input, const estimate::StateLayout& layout,

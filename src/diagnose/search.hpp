@@ -36,6 +36,14 @@ struct Movement {
 /// @param e  in which those that begin at some time have started
 [[nodiscard]] Movement movement(const Examination& e, const std::vector<Taken>& taken);
 
+/// What a converter left in the samples of an axis.
+struct Mark {
+  const SampleEffect* effect = nullptr;
+  int axis = 0;
+  double parameter = 0.0;
+};
+[[nodiscard]] NoiseFinding described(const Mark& mark, double gained);
+
 /// What is taken where both explain the same. A random effect stands for two mean effects as well as for one, and beats each by
 /// itself; mean effects by the dozen stand for noise that lasts. Which it is shows in the end (Search::evidence).
 enum class Order { kNoiseFirst, kMeansFirst };
@@ -115,9 +123,13 @@ class Search {
   /// The likeliest random effect of an axis, and on the same axis the others, whose gains are set against each other.
   /// @param to_beat  gain of another way to model noise
   bool take_random_effect(const Examination& examination, double to_beat);
+  /// A random effect that was taken already and is found again, since the noise beside it was fitted anew, is one: the old one
+  /// is taken back.
+  std::optional<AddedNoise> drop_same(const AddedNoise& noise);
   /// The size at which a random effect explains most.
   [[nodiscard]] FittedEffect fitted(const AddedNoise& noise) const;
-  /// Likewise at the correlation time that does, uphill from one at which it is known.
+  /// Likewise at the correlation time that does: uphill from one at which it is known, then between those that are looked at.
+  /// The root's uncertainty has in it what the time may be wrong by.
   [[nodiscard]] FittedEffect fitted_in_time(FittedEffect fit) const;
   [[nodiscard]] bool was_refused(const AddedNoise& noise) const;
   /// @param fits  the first is taken
@@ -176,8 +188,13 @@ class Search {
   [[nodiscard]] std::vector<Alternative> found() const;
   /// Of the noise that is stated, what the configuration does not want estimated anyway.
   [[nodiscard]] std::vector<NoiseFinding> noise_findings() const;
+  /// A relation whose signals are those of an effect of the catalogue, which was not looked for because its size is
+  /// implausible, has a name after all.
+  void name_relations();
   /// An effect that is taken back later by an equal jump the other way lasted until then: a wrong fix.
   void join_entries_with_exits();
+  /// Noise of an axis that a converter's mark explains belongs to it.
+  void fold_residues();
   /// Sine and cosine become amplitude and phase.
   void join_quadratures();
   void describe_what_was_not_found();
@@ -207,6 +224,7 @@ class Search {
   std::vector<AddedNoise> refused_noise_;
   std::vector<FittedEffect> beaten_;  ///< random effects that explain less than a mean effect does
   std::vector<NoiseFinding> random_effects_;
+  std::vector<Mark> marks_;
   Diagnosis result_;
 };
 

@@ -23,6 +23,23 @@ const NoiseSuspicion* strongest(const NoiseSuspicions& suspected, const NoiseEff
   return best;
 }
 
+/// The log-likelihood over the logarithm of the correlation time, and how the root follows it.
+struct OverTime {
+  double time = 0.0;        ///< of the vertex
+  double log_sd = 0.0;      ///< of the time
+  double root_slope = 0.0;  ///< of the root's logarithm
+};
+OverTime over_time(const FittedEffect& shorter, const FittedEffect& best, const FittedEffect& longer) {
+  constexpr double kFlat = 0.01;  // nothing is said of the time within a factor of a thousand
+  const double down = std::log(shorter.noise.time / best.noise.time), up = std::log(longer.noise.time / best.noise.time);
+  // Through (down, a), (0, 0), (up, b): y = p x + q x^2.
+  const double a = (shorter.gain - best.gain) / down, b = (longer.gain - best.gain) / up;
+  const double q = std::min((b - a) / (up - down), -kFlat);
+  const double p = a - q * down;
+  return {best.noise.time * std::exp(std::clamp(-0.5 * p / q, down, up)), 1.0 / std::sqrt(-2.0 * q),
+          std::log(longer.noise.root / shorter.noise.root) / (up - down)};
+}
+
 }  // namespace
 
 void Search::look_at_samples() {
@@ -37,25 +54,31 @@ void Search::look_at_samples() {
       std::swap(input_.imu, modelled.imu);
       run_again();
       const double gained = run_->log_likelihood() - before;
-      if (gained < kLeastOfSamples) {
-        std::swap(input_.imu, modelled.imu);
-        run_again();
+      marks_.push_back({&effect, axis, *found});
+      if (gained > kLeastOfSamples) {
+        result_.noise.push_back(described(marks_.back(), gained));
         continue;
       }
-      result_.noise.push_back({.name = std::string(effect.name),
-                               .sensor = std::string(name(effect.site)),
-                               .axis = axis_letter(axis),
-                               .parameter = std::string(effect.parameter),
-                               .unit = std::string(effect.unit),
-                               .value = *found,
-                               .sd = 0.0,
-                               .delta_log_likelihood = gained,
-                               .p_value = std::exp(-gained),
-                               .place = NoiseFinding::Place::kEffects,
-                               .meaning = std::string(effect.meaning),
-                               .equation = std::string(effect.equation),
-                               .separating_manoeuvre = std::string(effect.separating_manoeuvre)});
+      std::swap(input_.imu, modelled.imu);
+      run_again();
     }
+}
+
+NoiseFinding described(const Mark& mark, double gained) {
+  const SampleEffect& effect = *mark.effect;
+  return {.name = std::string(effect.name),
+          .sensor = std::string(name(effect.site)),
+          .axis = axis_letter(mark.axis),
+          .parameter = std::string(effect.parameter),
+          .unit = std::string(effect.unit),
+          .value = mark.parameter,
+          .sd = 0.0,
+          .delta_log_likelihood = gained,
+          .p_value = std::exp(-gained),
+          .place = NoiseFinding::Place::kEffects,
+          .meaning = std::string(effect.meaning),
+          .equation = std::string(effect.equation),
+          .separating_manoeuvre = std::string(effect.separating_manoeuvre)};
 }
 
 bool Search::take_noise(const Examination& examination, double form_gain) {
@@ -113,6 +136,11 @@ bool Search::take_random_effect(const Examination& examination, double to_beat) 
     beaten_ = std::move(fits);
     return false;
   }
+  if (const std::optional<AddedNoise> before = drop_same(first->noise)) {
+    AddedNoise both = fits.front().noise;
+    both.root = std::hypot(both.root, before->root);
+    fits.front() = fitted(both);
+  }
   fits.front() = fitted_in_time(fits.front());
   for (const NoiseEffect& effect : noise_catalogue())
     if (const NoiseSuspicion* s = strongest(suspected, effect, first->noise); s != nullptr && &effect != first->noise.effect)
@@ -123,26 +151,51 @@ bool Search::take_random_effect(const Examination& examination, double to_beat) 
   return true;
 }
 
+std::optional<AddedNoise> Search::drop_same(const AddedNoise& noise) {
+  const auto same =
+      std::ranges::find_if(added_, [&](const AddedNoise& one) { return one.effect == noise.effect && one.axis == noise.axis; });
+  if (same == added_.end()) return std::nullopt;
+  const AddedNoise dropped = *same;
+  random_effects_.erase(random_effects_.begin() + (same - added_.begin()));
+  added_.erase(same);
+  run_again();
+  return dropped;
+}
+
 FittedEffect Search::fitted(const AddedNoise& noise) const {
   return fitted_effect(noise, current_, run_->layout(), run_->log_likelihood());
 }
 
 FittedEffect Search::fitted_in_time(FittedEffect fit) const {
   const std::vector<double>& times = fit.noise.effect->times;
-  const auto count = static_cast<std::ptrdiff_t>(times.size());
-  const std::ptrdiff_t begin = std::ranges::find(times, fit.noise.time) - times.begin();
-  for (const std::ptrdiff_t step : {-1, 1}) {
-    const double before = fit.gain;
-    for (std::ptrdiff_t k = begin + step; k >= 0 && k < count; k += step) {
-      AddedNoise noise = fit.noise;
-      noise.time = times[static_cast<std::size_t>(k)];
-      FittedEffect other = fitted(noise);
-      if (!(other.gain > fit.gain)) break;
-      fit = std::move(other);
+  const auto at_time = [&](double time) {
+    AddedNoise noise = fit.noise;
+    noise.time = time;
+    return fitted(noise);
+  };
+  std::vector<std::optional<FittedEffect>> fits(times.size());
+  auto best = static_cast<std::size_t>(std::ranges::find(times, fit.noise.time) - times.begin());
+  fits[best] = fit;
+  for (bool uphill = true; uphill;) {
+    uphill = false;
+    for (std::size_t k = best > 0 ? best - 1 : 0; k < std::min(best + 2, times.size()); ++k) {
+      if (!fits[k]) fits[k] = at_time(times[k]);
+      if (fits[k]->gain <= fits[best]->gain) continue;
+      best = k;
+      uphill = true;
+      break;
     }
-    if (fit.gain > before) break;
   }
-  return fit;
+  if (times.size() < 2) return *fits[best];
+  // At an end of the table one step more says whether the likelihood falls there.
+  const FittedEffect shorter = best > 0 ? *fits[best - 1] : at_time(times[0] * times[0] / times[1]);
+  const FittedEffect longer = best + 1 < times.size() ? *fits[best + 1] : at_time(times[best] * times[best] / times[best - 1]);
+  const OverTime over = over_time(shorter, *fits[best], longer);
+  FittedEffect between = at_time(over.time);
+  if (!(between.gain > fits[best]->gain)) between = *fits[best];
+  between.log_sd = std::hypot(between.log_sd, over.root_slope * over.log_sd);
+  between.log_time_sd = over.log_sd;
+  return between;
 }
 
 bool Search::was_refused(const AddedNoise& noise) const {
@@ -181,6 +234,7 @@ void Search::describe(const std::vector<FittedEffect>& fits, double p_value) {
                        .p_value = p_value,
                        .place = f.noise.effect->level ? NoiseFinding::Place::kEffects : NoiseFinding::Place::kErrorModel,
                        .time_s = f.noise.time,
+                       .time_sd_s = f.noise.time * f.log_time_sd,
                        .meaning = std::string(f.noise.effect->meaning),
                        .equation = std::string(f.noise.effect->equation),
                        .separating_manoeuvre = std::string(f.noise.effect->separating_manoeuvre)};

@@ -9,9 +9,11 @@ namespace coast::diagnose {
 
 Diagnosis Search::finish() {
   describe_what_was_not_found();
+  for (std::size_t i = 0; i < result_.findings.size(); ++i) result_.findings[i].value = taken_[i].value;
+  name_relations();
+  fold_residues();
   std::ranges::move(noise_findings(), std::back_inserter(result_.noise));
   std::ranges::move(random_effects_, std::back_inserter(result_.noise));
-  for (std::size_t i = 0; i < result_.findings.size(); ++i) result_.findings[i].value = taken_[i].value;
   join_entries_with_exits();
   join_quadratures();
   std::ranges::stable_sort(result_.findings, std::ranges::greater{}, &Finding::delta_log_likelihood);
@@ -62,6 +64,61 @@ std::vector<NoiseFinding> Search::noise_findings() const {
   for (const NoiseFinding& f : noise_->findings)
     if (!asked_for_ || (f.sensor == "gnss" ? !asked_for_->gnss_scale : !asked_for_->imu_white_noise)) findings.push_back(f);
   return findings;
+}
+
+void Search::fold_residues() {
+  for (const Mark& mark : marks_) {
+    if (mark.effect->residue == nullptr) continue;
+    const auto is_of_the_axis = [&](const NoiseFinding& f) {
+      return f.sensor == name(mark.effect->site) && f.axis == axis_letter(mark.axis);
+    };
+    // What depends on the signal may be what is left of the steps, which does so too.
+    for (Finding& f : result_.findings)
+      if (f.hypothesis.effect->site == mark.effect->site && f.hypothesis.axis_name().starts_with(axis_letter(mark.axis)))
+        f.alternatives.insert(f.alternatives.begin(), {std::string(mark.effect->name), std::string(name(mark.effect->site)),
+                                                       axis_letter(mark.axis), 0.0});
+    double gained = 0.0;
+    std::erase_if(random_effects_, [&](const NoiseFinding& f) {
+      const bool is_part =
+          is_of_the_axis(f) && f.place == NoiseFinding::Place::kErrorModel && f.value < mark.effect->residue(mark.parameter);
+      if (is_part) gained += f.delta_log_likelihood;
+      return is_part;
+    });
+    if (gained == 0.0) continue;
+    const auto told = std::ranges::find_if(
+        result_.noise, [&](const NoiseFinding& f) { return f.name == mark.effect->name && is_of_the_axis(f); });
+    if (told != result_.noise.end()) {
+      told->delta_log_likelihood += gained;
+      continue;
+    }
+    result_.noise.push_back(described(mark, gained));
+    result_.noise.back().place = NoiseFinding::Place::kErrorModel;  // the noise of a step makes nothing likelier
+  }
+}
+
+void Search::name_relations() {
+  constexpr double kSame = 1e-6;  // of the variance: rounding
+  std::vector<Finding>& all = result_.findings;
+  if (std::ranges::all_of(all, [](const Finding& f) { return f.hypothesis.effect->relation.empty(); })) return;
+  const Eigen::MatrixXd information = examined({}, 0).information;
+  const Hypotheses& hypotheses = run_->hypotheses();
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    if (all[i].hypothesis.effect->relation.empty()) continue;
+    const Eigen::Index relation = taken_[i].hypothesis;
+    for (Eigen::Index h = 0; h < hypotheses.size(); ++h) {
+      const double scale = information(relation, h) / information(h, h);
+      const bool is_same = scale * information(relation, h) > (1.0 - kSame) * information(relation, relation);
+      if (!is_same || is_suggested(*hypotheses[h].effect) || hypotheses[h].begins_at_some_time()) continue;
+      all[i].hypothesis = hypotheses[h];
+      all[i].value *= scale;
+      all[i].sd *= std::abs(scale);
+      all[i].stability.reset();
+      std::erase_if(all[i].alternatives, [&](const Alternative& a) {
+        return a.name == hypotheses[h].effect->name && a.axis == hypotheses[h].axis_name() &&
+               a.sensor == name(hypotheses[h].effect->site);
+      });
+    }
+  }
 }
 
 void Search::join_entries_with_exits() {

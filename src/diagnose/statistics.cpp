@@ -97,6 +97,25 @@ void add_innovations(const MissionRun& run, std::vector<Statistic>& figures) {
                        squares[i] > 0.0 ? products[i] / squares[i] : 0.0});
 }
 
+/// Of positions and velocities, tenth by tenth of the mission.
+void add_tenths(const MissionRun& run, std::vector<Statistic>& figures) {
+  constexpr std::size_t kParts = 10;
+  const std::vector<record::ImuSample>& samples = run.mission().imu.samples;
+  const geo::GpsTime start = samples.front().t;
+  const double length = (samples.back().t - start) / static_cast<double>(kParts);
+  std::array<Mean, kParts> nis;
+  for (const estimate::InnovationRecord& r : run.solution().forward.innovations) {
+    if (!r.used) continue;
+    Mean& mean = nis[static_cast<std::size_t>(std::clamp((r.t - start) / length, 0.0, static_cast<double>(kParts - 1)))];
+    mean.sum += r.nis;
+    mean.count += r.dof;
+  }
+  for (std::size_t k = 0; k < kParts; ++k) {
+    const Stretch stretch{length * static_cast<double>(k), length * static_cast<double>(k + 1)};
+    figures.push_back({fmt::format("NIS from {:.0f} to {:.0f} s", stretch.from_s, stretch.to_s), nis[k].value(), stretch});
+  }
+}
+
 /// 0 where the regime never changes, or is not known.
 double nis_with_more_less_with_less(const MissionRun& run, const Regime& regime) {
   if (regime.value.empty()) return 0.0;
@@ -171,6 +190,7 @@ Spread spread_of(const std::vector<std::vector<Statistic>>& twins, std::size_t f
 std::vector<Statistic> statistics_of(const MissionRun& run, const Examination& examination) {
   std::vector<Statistic> figures;
   add_innovations(run, figures);
+  add_tenths(run, figures);
   add_regimes(run, figures);
   add_disturbances(examination.disturbances, figures);
   double largest = 0.0;
@@ -193,8 +213,8 @@ std::vector<TwinStatistic> against(const std::vector<Statistic>& real, const std
     std::ranges::sort(values);
     const double away = spread_of(twins, j, twins.size()).away(real[j].value);
     const auto as_far = static_cast<double>(std::ranges::count_if(farthest, [&](double f) { return f >= away; }));
-    result.push_back({real[j].name, real[j].value, quantile(values, 0.05), quantile(values, 0.5), quantile(values, 0.95),
-                      (1.0 + as_far) / (1.0 + static_cast<double>(twins.size()))});
+    result.push_back({real[j].name, real[j].stretch, real[j].value, quantile(values, 0.05), quantile(values, 0.5),
+                      quantile(values, 0.95), (1.0 + as_far) / (1.0 + static_cast<double>(twins.size()))});
   }
   return result;
 }

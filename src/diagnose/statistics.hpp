@@ -1,6 +1,7 @@
 #pragma once
 // What a run shows, in figures that twins have too; private to the room.
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -12,9 +13,11 @@ namespace coast::diagnose {
 struct Statistic {
   std::string name;
   double value = 0.0;
+  std::optional<Stretch> stretch = {};
 };
-/// NIS and whiteness of innovations, NIS of regimes against the rest, disturbances of every axis over seconds and minutes, the
-/// largest likelihood ratios, drift in artificial outages. The same figures in the same order for every run.
+/// NIS and whiteness of innovations, NIS of tenths of the mission, of regimes against the rest, disturbances of every axis over
+/// seconds and minutes, the largest likelihood ratios, drift in artificial outages. The same figures in the same order for
+/// every run.
 [[nodiscard]] std::vector<Statistic> statistics_of(const MissionRun& run, const Examination& examination);
 
 /// The recording among its twins.

@@ -9,8 +9,13 @@
 
 namespace coast::test {
 
+struct MissionWithTruth {
+  diagnose::MissionInput input;
+  record::Trajectory truth;
+};
+
 /// A short drive with an industrial IMU that errs by its own model, GNSS at the antenna twice a second.
-inline diagnose::MissionInput honest_mission(std::uint64_t seed, double duration_s = 300.0) {
+inline MissionWithTruth honest_mission_with_truth(std::uint64_t seed, double duration_s = 300.0) {
   simulate::Scenario scenario = simulate::Scenario::from(io::parse_yaml(fmt::format(R"(
 schema: coast.scenario/1
 trajectory: {{kind: city, duration_s: {}, static_s: 20, origin_deg_m: [46.52, 6.57, 400], course_deg: 30}}
@@ -35,7 +40,10 @@ accel:
   diagnose::MissionInput input{std::move(recorded.imu), std::move(recorded.gnss), {}};
   input.setup.model = *scenario.error_model;
   input.setup.lever_arm_b = scenario.gnss.lever_arm_b;
-  return input;
+  return {std::move(input), std::move(recorded.truth)};
+}
+inline diagnose::MissionInput honest_mission(std::uint64_t seed, double duration_s = 300.0) {
+  return honest_mission_with_truth(seed, duration_s).input;
 }
 
 }  // namespace coast::test

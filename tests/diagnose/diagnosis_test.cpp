@@ -243,6 +243,10 @@ TEST(Diagnosis, AWanderingBiasIsFoundAsNoise) {
   EXPECT_GT(f->value, kSigma / 4.0);
   EXPECT_LT(f->value, kSigma * 4.0);
   EXPECT_NEAR(d.after.nis, 1.0, 0.1);
+  if (f->name != "extra_gauss_markov_bias") return;
+  EXPECT_NEAR(std::log(f->value / kSigma), 0.0, 4.0 * f->sd / f->value);
+  ASSERT_GT(f->time_sd_s, 0.0);
+  EXPECT_NEAR(std::log(f->time_s / 30.0), 0.0, 4.0 * f->time_sd_s / f->time_s);
 }
 
 TEST(Diagnosis, AnOscillationIsFoundWithItsFrequency) {
@@ -269,6 +273,53 @@ TEST(Diagnosis, ARelationWithoutANameIsTold) {
   EXPECT_NEAR(f->value, 0.02, 4.0 * f->sd);
   ASSERT_TRUE(f->stability.has_value());
   EXPECT_GT(*f->stability, 0.5);
+}
+
+// Far beyond what is plausible, so it is not looked for by name; but what is found is nothing else.
+TEST(Diagnosis, ARelationThatHasANameIsToldByIt) {
+  MissionInput input = test::honest_mission(12);
+  constexpr double kCoefficient = 2e-4;
+  for (record::ImuSample& sample : input.imu.samples)
+    sample.dtheta.x() += kCoefficient * std::pow(sample.dv.x() / sample.dt, 2) * sample.dt;
+  const Diagnosis d = diagnose::diagnose(input, kWithoutTwins, {});
+  const Finding* f = only(d, "gyro_g2_sensitivity", "xx");
+  ASSERT_NE(f, nullptr) << names(d);
+  EXPECT_NEAR(f->value, kCoefficient, 4.0 * f->sd);
+}
+
+/// The base 0.3 m too far north and 0.2 m too high, the reference free of errors.
+TEST(Diagnosis, AReferenceShowsThatTheBaseIsOff) {
+  test::MissionWithTruth recorded = test::honest_mission_with_truth(13, 420.0);
+  const DiagnosisOptions options{.twins = 0, .reference = Reference{&recorded.truth, Eigen::Vector3d::Zero()}};
+  const Diagnosis honest = diagnose::diagnose(recorded.input, options, {});
+  EXPECT_TRUE(honest.reference_used);
+  EXPECT_TRUE(honest.findings.empty()) << names(honest);
+  const auto is_base = [](const auto& one) { return one.hypothesis.effect->name == "base_coordinate_offset"; };
+  EXPECT_EQ(std::ranges::count_if(honest.detectable_not_found, is_base), 3);
+  EXPECT_EQ(std::ranges::count_if(honest.not_observable, is_base), 0);
+
+  const Eigen::Vector3d off_n(0.3, 0.0, -0.2);
+  for (record::GnssFix& fix : recorded.input.gnss.fixes) fix.r_ea_e += geo::C_n_e(geo::geodetic_from_ecef(fix.r_ea_e)) * off_n;
+  const Diagnosis d = diagnose::diagnose(recorded.input, options, {});
+  ASSERT_EQ(d.findings.size(), 2U) << names(d);
+  for (const Finding& f : d.findings) {
+    EXPECT_TRUE(is_base(f));
+    EXPECT_NEAR(f.value, off_n(f.hypothesis.axis), 4.0 * f.sd);
+    EXPECT_LT(f.sd, 0.01);
+  }
+  EXPECT_FALSE(diagnose::diagnose(recorded.input, kWithoutTwins, {}).reference_used);
+
+  // Taken out as a file names it.
+  std::vector<NamedEffect> named;
+  for (const Finding& f : d.findings)
+    named.push_back({.effect = f.hypothesis.effect, .axis = f.hypothesis.axis, .value = f.value, .from_s = {}, .to_s = {}});
+  const MissionInput mended = without(named, recorded.input, {});
+  for (std::size_t i = 0; i < mended.gnss.fixes.size(); ++i) {
+    const Eigen::Vector3d& r_e = mended.gnss.fixes[i].r_ea_e;
+    const Eigen::Vector3d moved_n =
+        geo::C_n_e(geo::geodetic_from_ecef(r_e)).transpose() * (recorded.input.gnss.fixes[i].r_ea_e - r_e);
+    ASSERT_LT((moved_n - off_n).norm(), 0.02);
+  }
 }
 
 TEST(Diagnosis, ASaturatedGyroIsFoundAndMended) {

@@ -61,7 +61,8 @@ struct NoiseFinding {
   double delta_log_likelihood = 0.0;
   double p_value = 1.0;
   Place place = Place::kNoise;
-  double time_s = 0.0;  ///< correlation time; 0: it has none
+  double time_s = 0.0;     ///< correlation time; 0: it has none
+  double time_sd_s = 0.0;  ///< 0: not known
   std::string meaning = {};
   std::string equation = {};
   std::string separating_manoeuvre = {};
@@ -76,9 +77,16 @@ struct Fit {
   std::vector<double> outages_m = {};  ///< one by one
 };
 
+/// A part of a mission, in seconds since its start.
+struct Stretch {
+  double from_s = 0.0;
+  double to_s = 0.0;
+};
+
 /// A figure of the recording beside those of its twins.
 struct TwinStatistic {
   std::string name;
+  std::optional<Stretch> stretch;  ///< where it is of a part of the mission
   double real = 0.0;
   double q05 = 0.0, q50 = 0.0, q95 = 0.0;  ///< of the twins
   double p_adjusted = 1.0;  ///< that any of the figures of a twin lies as far out among the other twins as this one
@@ -104,6 +112,12 @@ struct PairedDifference {
 /// Whether outages drift farther with `after`: by half, and by more than chance has it of their differences (1 %).
 [[nodiscard]] bool drifts_farther(const Fit& before, const Fit& after);
 
+/// A trajectory that is known otherwise. It serves for what nothing in the recording can show: an offset of the base.
+struct Reference {
+  const record::Trajectory* trajectory = nullptr;
+  Eigen::Vector3d lever_arm_b = Eigen::Vector3d::Zero();  ///< from the IMU to its point
+};
+
 struct Diagnosis {
   std::vector<Finding> findings;
   std::vector<NoiseFinding> noise;
@@ -118,7 +132,8 @@ struct Diagnosis {
   std::vector<TwinStatistic> twins;        ///< of the configured model
   std::vector<TwinStatistic> twins_after;  ///< of the model with what was found
   std::optional<HeldOut> held_out;         ///< where mean effects were found
-  std::vector<std::string> rejected;       ///< found, and given up: worse on held-out blocks, or in outages
+  bool reference_used = false;
+  std::vector<std::string> rejected;  ///< found, and given up: worse on held-out blocks, or in outages
   std::size_t runs = 0;
   std::vector<estimate::InnovationRecord> innovations_before;
   std::vector<estimate::InnovationRecord> innovations_after;
@@ -134,6 +149,7 @@ struct DiagnosisOptions {
   /// `gnss.time_offset_s` by which turns of GNSS and IMU match best (io::inspect). Where it is far from the configured one, the
   /// search begins with a run there: no score that is linear about the configured one tells of it.
   std::optional<double> time_offset_s = {};
+  std::optional<Reference> reference = {};
 };
 
 /// Stepwise: the mission is run; of all hypotheses beside those taken the likeliest, by Bayes factor and by runs where there

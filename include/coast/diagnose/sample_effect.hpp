@@ -33,6 +33,8 @@ struct SampleEffect {
   std::optional<double> (*find)(const AxisSeries& series) = nullptr;
   /// The mission with what can be mended mended, and with noise for the rest.
   void (*model)(MissionInput& input, Site site, int axis, double parameter) = nullptr;
+  /// Sd of an error that it may leave and that wanders: noise of the same axis that is no larger is a part of it. Null: none.
+  double (*residue)(double parameter) = nullptr;
 };
 
 /// Every such effect. A new one is a file in src/diagnose/sample_effects and a line in sample_catalogue.cpp.

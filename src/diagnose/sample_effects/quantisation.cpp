@@ -59,6 +59,8 @@ SampleEffect quantisation(Site site) {
       .source = "Widrow & Kollar (2008), section 4",
       .find = find_step,
       .model = add_rounding_noise,
+      // As long as a smooth signal stays within a step, the error is as smooth as the signal.
+      .residue = [](double step) { return step / std::sqrt(12.0); },
   };
 }
 

@@ -15,14 +15,15 @@ class Effect:
     """`probe`: a size that is small, for sensitivities; an effect without one has a `typical` size for an IMU (its grade's noise), where
     a search begins.
     `last`: acts when the noise is in. `relation`: for effects without a name. `rough`: the vibration that it needs,
-    shaking or nodding. `positive`: has no other sign."""
+    shaking or nodding. `positive`: has no other sign. `parameter`: of a size, what the tables of docs/effects.md tell, where that is
+    another number."""
 
     def __init__(self, name, sensor, axes, unit, probe=None, sample=None, fix=None, onset=False, typical=None, last=None, relation=None,
-                 rough=None, positive=False):
+                 rough=None, positive=False, parameter=lambda size: size):
         self.name, self.sensor, self.axes, self.unit, self.probe = name, sensor, axes, unit, probe
         self.sample, self.fix, self.onset = sample, fix, onset
         self.typical, self.last, self.relation = typical, last, relation
-        self.rough, self.positive = rough, positive
+        self.rough, self.positive, self.parameter = rough, positive, parameter
 
 
 def label(axis):
@@ -288,13 +289,15 @@ EFFECTS = [
 NOISE = [
     Effect("extra_gauss_markov_bias", "gyro", SINGLE, "rad/s", sample=Wandering(True, None), typical=lambda n: n.gyro / math.sqrt(30.0)),
     Effect("extra_gauss_markov_bias", "accel", SINGLE, "m/s^2", sample=Wandering(False, None), typical=lambda n: n.accel / math.sqrt(30.0)),
-    Effect("flicker_noise", "gyro", SINGLE, "rad/s", sample=Wandering(True, OCTAVES), typical=lambda n: n.gyro / math.sqrt(100.0)),
+    # A variance of c^2 in each octave of correlation times is a density of B^2/(2 pi f) with B^2/pi = c^2/ln 2.
+    Effect("flicker_noise", "gyro", SINGLE, "rad/s", sample=Wandering(True, OCTAVES), typical=lambda n: n.gyro / math.sqrt(100.0),
+           parameter=lambda c: c * math.sqrt(math.pi / math.log(2.0))),
     Effect("dynamics_dependent_noise", "gyro", SINGLE, "sqrt(s)", last=gyro_noise_of_turning, typical=lambda n: n.gyro / 0.3),
     Effect("saturation", "gyro", [Z], "rad/s", last=gyro_clips),
     Effect("quantisation", "gyro", SINGLE, "rad/s", last=gyro_rounds, typical=lambda n: n.gyro_sample),
     Effect("quantisation", "accel", SINGLE, "m/s^2", last=accel_rounds, typical=lambda n: n.accel_sample),
-    Effect("gnss_sd_optimistic", "gnss", [None], "1", fix=fix_noise, typical=lambda n: 0.1),
-    Effect("gnss_correlated_error", "gnss", [None], "m", fix=fix_wanders, typical=lambda n: 0.003),
+    Effect("gnss_sd_optimistic", "gnss", ["horizontal"], "1", fix=fix_noise, typical=lambda n: 0.1, parameter=lambda c: 1.0 + c),
+    Effect("gnss_correlated_error", "gnss", ["horizontal"], "m", fix=fix_wanders, typical=lambda n: 0.003),
     Effect("harmonic_disturbance", "gyro", SINGLE, "rad/s", 1e-5, sample=oscillation),
     Effect("harmonic_disturbance", "accel", SINGLE, "m/s^2", 1e-3, sample=accel_oscillation),
 ]

@@ -219,6 +219,6 @@ gnss: {{file: gnss.csv, format: csv, gps_week: {WEEK}, time_offset_s: 0{", use_v
 def describe(case, concealed):
     return {"seed": case.seed, "kind": case.kind, "grade": case.grade, "duration_s": case.duration,
             "effects": [{"name": e.name, "sensor": e.sensor, "axis": label(a) if e.name not in ("gnss_wrong_fix", "gravity_disturbance")
-                         else "ned"[a], "value": size, "unit": e.unit, "t_start_s": START_SOW + onset if e.onset else None,
+                         else "ned"[a], "value": e.parameter(size), "unit": e.unit, "t_start_s": START_SOW + onset if e.onset else None,
                          "relation": e.relation}
                         for e, a, size, onset in concealed]}

@@ -118,12 +118,24 @@ def factor_that_is_seen(seen, differences):
     return 10.0 ** high
 
 
+def realisations(seen, effect, axis, size):
+    """Ten of the effect; one of what chance has no part in: rounding."""
+    differences = [seen.difference(effect, axis, size, -1.0, realisation) for realisation in (1, 2)]
+    if differences[0] == differences[1]:
+        return differences[:1]
+    return differences + [seen.difference(effect, axis, size, -1.0, realisation) for realisation in range(3, 11)]
+
+
 def of_noise(seen, effect, axis, size):
-    """Ten realisations of the effect, each beside five of the mission's noise; again at the size found, until it stays."""
-    for _ in range(4):
-        differences = [seen.difference(effect, axis, size, -1.0, realisation) for realisation in range(1, 11)]
-        factor = factor_that_is_seen(seen, differences)
-        size *= factor
-        if abs(math.log(factor)) < 0.15:
+    """Realisations of the effect, fifty recordings of noise beside them; again at the size found, until it stays. Where sizes on either
+    side are known, the next one is between them: what rounding does is not in proportion to its step."""
+    low, high = 0.0, math.inf
+    for _ in range(12):
+        factor = factor_that_is_seen(seen, realisations(seen, effect, axis, size))
+        if abs(math.log(factor)) < 0.15 or high < 1.1 * low:
             break
+        low, high = (size, high) if factor > 1.0 else (low, size)
+        size *= factor
+        if not low < size < high:
+            size = math.sqrt(low * high)
     return size
