@@ -11,7 +11,7 @@ namespace coast::diagnose {
 
 namespace {
 
-constexpr double kLongestFit = 300.0;  // s: the filter runs a hundred times over it
+constexpr double kLongestFit = 600.0;  // s: the filter runs a hundred times over it
 
 /// Sums over one component of one kind of innovation.
 struct ComponentSums {
@@ -68,13 +68,20 @@ std::vector<NoiseFinding> findings_of(const estimate::NoiseFit& fit, double p_va
   std::vector<NoiseFinding> findings;
   for (std::size_t i = 0; i < fit.names.size(); ++i) {
     const auto words = std::ranges::find(kWords, fit.names[i], &ParameterWords::parameter);
-    if (words == kWords.end() || !(fit.log_sd[i] > 0.0) || words->parameter == "correlated_time_s") continue;
+    if (words == kWords.end() || words->parameter == "correlated_time_s" || !(fit.log_sd[i] > 0.0)) continue;
     const double value = value_of(fit.adjustment, fit.names[i]);
-    const double deviation = words->is_factor ? std::abs(std::log(value)) : 1.0;
-    if (deviation < kBeyondChance * fit.log_sd[i]) continue;
-    findings.push_back({words->name, words->sensor, words->axis, words->called, words->unit, value, value * fit.log_sd[i],
+    // How well a factor is known says whether it is one; an amplitude is there where the likelihood needs it.
+    const bool is_told = words->is_factor ? std::abs(std::log(value)) > kBeyondChance * fit.log_sd[i]
+                                          : fit.needed[i] > 0.5 * kBeyondChance * kBeyondChance;
+    if (!is_told) continue;
+    findings.push_back({words->name, words->sensor, words->axis, words->called, words->unit, value,
+                        std::isfinite(fit.log_sd[i]) ? value * fit.log_sd[i] : 0.0,
                         fit.log_likelihood_after - fit.log_likelihood_before, p_value});
-    if (!words->is_factor) findings.back().time_s = fit.adjustment.correlated_gnss.time_s;
+    if (words->is_factor) continue;
+    findings.back().time_s = fit.adjustment.correlated_gnss.time_s;
+    const auto time = std::ranges::find(fit.names, "correlated_time_s") - fit.names.begin();
+    if (const double log_sd = fit.log_sd[static_cast<std::size_t>(time)]; std::isfinite(log_sd))
+      findings.back().time_sd_s = findings.back().time_s * log_sd;
   }
   return findings;
 }

@@ -3,6 +3,7 @@
 #include <LBFGSB.h>
 #include <tbb/parallel_for.h>
 
+#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <atomic>
 #include <cmath>
@@ -54,6 +55,12 @@ std::vector<Parameter> free_parameters(const NoiseFitChoice& choice, bool veloci
   return p;
 }
 
+struct Quadratic {
+  double value;
+  Eigen::VectorXd gradient;
+  Eigen::MatrixXd hessian;
+};
+
 /// Minus the mean log-likelihood of an innovation, as a function of the logarithms of the free parameters.
 class Objective {
  public:
@@ -98,32 +105,47 @@ class Objective {
   // Forward differences: their truncation moves the optimum by half a step, 0.05 % of a parameter.
   double operator()(const Eigen::VectorXd& theta, Eigen::VectorXd& gradient) const {
     constexpr double kStep = 1e-3;  // of a logarithm; the rounding of a pass is 1e-11 of the value
-    const Eigen::VectorXd values = values_at(theta, {kStep});
-    gradient = (values.tail(theta.size()).array() - values(0)) / kStep;
-    return values(0);
+    std::vector<Eigen::VectorXd> points(static_cast<std::size_t>(theta.size()) + 1, theta);
+    for (Eigen::Index i = 0; i < theta.size(); ++i) points[static_cast<std::size_t>(i) + 1](i) += kStep;
+    const std::vector<double> values = values_at(points);
+    gradient.resize(theta.size());
+    for (Eigen::Index i = 0; i < theta.size(); ++i) gradient(i) = (values[static_cast<std::size_t>(i) + 1] - values[0]) / kStep;
+    return values[0];
   }
 
-  // Diagonal of the second derivatives.
-  [[nodiscard]] Eigen::VectorXd curvature(const Eigen::VectorXd& theta) const {
-    constexpr double kStep = 0.02;  // truncation 1e-4 of the curvature, far above the rounding of a pass
+  // Value, central first and second derivatives.
+  [[nodiscard]] Quadratic quadratic(const Eigen::VectorXd& theta) const {
+    constexpr double kStep = 0.05;  // truncation 1e-3 of a derivative, far above the rounding of a pass
     const Eigen::Index n = theta.size();
-    const Eigen::VectorXd values = values_at(theta, {kStep, -kStep});
-    return (values.segment(1, n) + values.tail(n) - Eigen::VectorXd::Constant(n, 2.0 * values(0))) / (kStep * kStep);
+    std::vector<Eigen::VectorXd> points{theta};
+    const auto add_both = [&](const Eigen::VectorXd& step) {
+      points.emplace_back(theta + step);
+      points.emplace_back(theta - step);
+    };
+    for (Eigen::Index i = 0; i < n; ++i) add_both(kStep * Eigen::VectorXd::Unit(n, i));
+    for (Eigen::Index i = 0; i < n; ++i)
+      for (Eigen::Index j = 0; j < i; ++j) add_both(kStep * (Eigen::VectorXd::Unit(n, i) + Eigen::VectorXd::Unit(n, j)));
+    const std::vector<double> values = values_at(points);
+    Quadratic q{values[0], Eigen::VectorXd(n), Eigen::MatrixXd(n, n)};
+    const auto sum = [&](std::size_t pair) { return values[2 * pair + 1] + values[2 * pair + 2] - 2.0 * values[0]; };
+    auto pair = static_cast<std::size_t>(n);
+    for (Eigen::Index i = 0; i < n; ++i) {
+      const auto at = static_cast<std::size_t>(i);
+      q.gradient(i) = (values[2 * at + 1] - values[2 * at + 2]) / (2.0 * kStep);
+      q.hessian(i, i) = sum(at) / (kStep * kStep);
+      for (Eigen::Index j = 0; j < i; ++j, ++pair)
+        q.hessian(i, j) = q.hessian(j, i) = 0.5 * (sum(pair) - sum(at) - sum(static_cast<std::size_t>(j))) / (kStep * kStep);
+    }
+    return q;
   }
 
   [[nodiscard]] const std::vector<Parameter>& parameters() const { return parameters_; }
   [[nodiscard]] int evaluations() const { return evaluations_; }
 
  private:
-  // At the point itself, then with each parameter moved by the first step, then by the second.
-  [[nodiscard]] Eigen::VectorXd values_at(const Eigen::VectorXd& theta, const std::vector<double>& steps) const {
-    const auto n = static_cast<std::size_t>(theta.size());
-    Eigen::VectorXd values(static_cast<Eigen::Index>(1 + n * steps.size()));
-    tbb::parallel_for(std::size_t{0}, static_cast<std::size_t>(values.size()), [&](std::size_t k) {
-      Eigen::VectorXd moved = theta;
-      if (k > 0) moved(static_cast<Eigen::Index>((k - 1) % n)) += steps[(k - 1) / n];
-      values(static_cast<Eigen::Index>(k)) = value(moved);
-    });
+  [[nodiscard]] std::vector<double> values_at(const std::vector<Eigen::VectorXd>& points) const {
+    std::vector<double> values(points.size());
+    tbb::parallel_for(std::size_t{0}, points.size(), [&](std::size_t k) { values[k] = value(points[k]); });
     return values;
   }
 
@@ -136,15 +158,22 @@ class Objective {
   mutable std::atomic<int> evaluations_{0};
 };
 
-Eigen::VectorXd minimise(const Objective& objective, Eigen::VectorXd theta, const std::function<void(double)>& progress) {
-  const auto n = theta.size();
-  Eigen::VectorXd low(n);
-  Eigen::VectorXd high(n);
-  for (Eigen::Index i = 0; i < n; ++i) {
-    const Parameter& p = objective.parameters()[static_cast<std::size_t>(i)];
-    low(i) = std::log(p.low);
-    high(i) = std::log(p.high);
+struct Bounds {
+  Eigen::VectorXd low, high;
+  explicit Bounds(const std::vector<Parameter>& parameters) {
+    low.resize(static_cast<Eigen::Index>(parameters.size()));
+    high.resize(low.size());
+    for (Eigen::Index i = 0; i < low.size(); ++i) {
+      low(i) = std::log(parameters[static_cast<std::size_t>(i)].low);
+      high(i) = std::log(parameters[static_cast<std::size_t>(i)].high);
+    }
   }
+};
+
+constexpr double kNowhere = 1e-5;  // of the mean log-likelihood of an innovation: the search has ended
+
+Eigen::VectorXd minimise(const Objective& objective, Eigen::VectorXd theta, const std::function<void(double)>& progress) {
+  Bounds bounds(objective.parameters());
   LBFGSpp::LBFGSBParam<double> settings;
   settings.max_iterations = 40;
   settings.epsilon = 1e-4;
@@ -168,13 +197,12 @@ Eigen::VectorXd minimise(const Objective& objective, Eigen::VectorXd theta, cons
   // where finite differences end; or where the curvature that was gathered far away misleads. From the best point seen, without
   // that memory, the search goes on as long as it gets anywhere.
   constexpr int kMostStarts = 6;
-  constexpr double kNowhere = 1e-5;  // of the mean log-likelihood of an innovation
   for (int start = 0; start < kMostStarts; ++start) {
     const double before = best_value;
     theta = best;
     double value = 0.0;
     try {
-      solver.minimize(function, theta, value, low, high);
+      solver.minimize(function, theta, value, bounds.low, bounds.high);
       break;
     } catch (const std::runtime_error&) {
     } catch (const std::logic_error&) {
@@ -184,20 +212,64 @@ Eigen::VectorXd minimise(const Objective& objective, Eigen::VectorXd theta, cons
   return best;
 }
 
+/// Of each parameter, with all others free; infinite where the data do not tell it. Before them a logarithm is known to a
+/// factor of twenty or so, which keeps what they do not tell from spreading to what they do.
+std::vector<double> deviations(const Eigen::MatrixXd& information) {
+  constexpr double kBefore = 0.1;  // information
+  constexpr double kUnknown = 2.0;
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(information);
+  const Eigen::VectorXd variance = (solver.eigenvalues().cwiseMax(0.0).array() + kBefore).inverse();
+  const Eigen::VectorXd sd = (solver.eigenvectors().cwiseAbs2() * variance).cwiseSqrt();
+  std::vector<double> known(sd.begin(), sd.end());
+  std::ranges::replace_if(
+      known, [](double one) { return one > kUnknown; }, std::numeric_limits<double>::infinity());
+  return known;
+}
+
+/// Along a ridge, where amplitude and time of an error stand for each other, gradients by forward differences end early:
+/// Newton's steps go on, no farther than by a factor of e, and shorter as long as they lead uphill.
+/// @return  second derivatives there
+Eigen::MatrixXd polish(const Objective& objective, Eigen::VectorXd& theta) {
+  constexpr int kMost = 4;
+  constexpr int kHalvings = 3;
+  constexpr double kFlat = 1e-4;  // curvature of an innovation's log-likelihood
+  const Bounds bounds(objective.parameters());
+  Eigen::MatrixXd hessian;
+  for (int round = 0; round < kMost; ++round) {
+    const Quadratic q = objective.quadratic(theta);
+    hessian = q.hessian;
+    const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(q.hessian);
+    const Eigen::VectorXd curvature = solver.eigenvalues().cwiseMax(kFlat);
+    Eigen::VectorXd step =
+        -(solver.eigenvectors() * curvature.cwiseInverse().asDiagonal() * solver.eigenvectors().transpose() * q.gradient);
+    step /= std::max(1.0, step.lpNorm<Eigen::Infinity>());
+    bool moved = false;
+    for (int i = 0; i <= kHalvings && !moved; ++i, step *= 0.5) {
+      const Eigen::VectorXd there = (theta + step).cwiseMax(bounds.low).cwiseMin(bounds.high);
+      moved = objective.value(there) < q.value - kNowhere;
+      if (moved) theta = there;
+    }
+    if (!moved) break;
+  }
+  return hessian;
+}
+
 // What the optimum gains over the stated noise, and how well it is known.
-void describe(const Objective& objective, const NoiseAdjustment& as_stated, const Eigen::VectorXd& theta, NoiseFit& fit) {
+void describe(const Objective& objective, const NoiseAdjustment& as_stated, const Eigen::MatrixXd& hessian, NoiseFit& fit) {
   const FilterResult stated = objective.run(as_stated);
-  const Eigen::VectorXd curvature = objective.curvature(theta);
   fit.innovations = stated.innovations.size();
   fit.log_likelihood_before = stated.log_likelihood;
   fit.log_likelihood_after = objective.run(fit.adjustment).log_likelihood;
   fit.evaluations += objective.evaluations();
   fit.names.clear();
-  fit.log_sd.clear();
-  for (std::size_t i = 0; i < objective.parameters().size(); ++i) {
-    fit.names.push_back(objective.parameters()[i].name);
-    const double information = curvature(static_cast<Eigen::Index>(i)) * static_cast<double>(fit.innovations);
-    fit.log_sd.push_back(information > 0.0 ? 1.0 / std::sqrt(information) : std::numeric_limits<double>::infinity());
+  for (const Parameter& p : objective.parameters()) fit.names.push_back(p.name);
+  fit.log_sd = deviations(static_cast<double>(fit.innovations) * hessian);
+  fit.needed.clear();
+  for (const Parameter& p : objective.parameters()) {
+    NoiseAdjustment other = fit.adjustment;
+    NoiseAdjustment stated_noise = as_stated;
+    p.value(other) = std::max(p.low, p.value(stated_noise));
+    fit.needed.push_back(fit.log_likelihood_after - objective.run(other).log_likelihood);
   }
 }
 
@@ -233,8 +305,9 @@ NoiseFit fit_noise(const Mission& mission, const noise::ImuErrorModel& model, co
   for (int round = 0; round < 2; ++round) {
     const Objective objective(cleaned, model, options, parameters, from, start);
     theta = minimise(objective, theta, progress);
+    const Eigen::MatrixXd hessian = polish(objective, theta);
     fit.adjustment = objective.at(theta);
-    describe(objective, {options.gnss_scale, options.auxiliary.correlated_gnss}, theta, fit);
+    describe(objective, {options.gnss_scale, options.auxiliary.correlated_gnss}, hessian, fit);
     if (round == 1) break;
     // What the gate of the fitted filter refuses must not have shaped the fit.
     const ForwardFilter filter(cleaned, adjusted(model, fit.adjustment), adjusted(options, fit.adjustment));

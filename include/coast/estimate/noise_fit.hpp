@@ -30,9 +30,12 @@ struct NoiseFit {
   double log_likelihood_after = 0.0;
   std::size_t innovations = 0;  ///< position and velocity innovations that entered
   int evaluations = 0;
-  /// Standard deviations of the logarithms of the free parameters at the optimum (from the curvature), in the order of `names`.
+  /// Standard deviations of the logarithms of the free parameters, in the order of `names`: by the second derivatives at the
+  /// optimum, each with all others free; infinite where the innovations do not tell it.
   std::vector<std::string> names;
   std::vector<double> log_sd;
+  /// By how much the log-likelihood falls where one of them is as stated (an amplitude: none) and the others are as they are.
+  std::vector<double> needed;
 };
 
 [[nodiscard]] noise::ImuErrorModel adjusted(const noise::ImuErrorModel& model, const NoiseAdjustment& adjustment);
@@ -42,8 +45,8 @@ struct NoiseFit {
 [[nodiscard]] NoiseAdjustment starting_point(const FilterOptions& options, const NoiseFitChoice& choice);
 
 /// Maximum likelihood of the innovations (prediction-error decomposition; Harvey 1989, section 3.4) over the logarithms of the
-/// free parameters, by L-BFGS-B with forward differences. The gate is open while fitting: what the final filter then refuses
-/// is left out and the fit repeated once.
+/// free parameters, by L-BFGS-B with forward differences and some of Newton's steps. The gate is open while fitting: what the
+/// final filter then refuses is left out and the fit repeated once.
 /// @param from   where the search begins; what is not free keeps its value
 /// @param start  state at the first epoch, covariance from ForwardFilter::initial_state
 /// @throws NumericalError  the filter fails at the start values
