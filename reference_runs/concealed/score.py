@@ -49,7 +49,8 @@ def score(truth, effects):
         return s
     first = effects[0]
     s["first"], s["named"] = found_as(first, truth), among(first, truth)
-    s["site"] = first["sensor"] == truth["sensor"] and same_axis(first, truth)
+    # A relation has the axis that responds and no pair.
+    s["site"] = first["sensor"] == truth["sensor"] and (same_axis(first, truth) or ("relation" in first and first["axis"] == truth["axis"][:1]))
     s["said"] = f'{first["name"]} {first.get("relation", first["axis"])}'
     gains = [e["held_out_gain"] for e in effects if "held_out_gain" in e]
     s["held_out"] = min(gains) > 0.0 if gains else None
