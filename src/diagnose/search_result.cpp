@@ -117,6 +117,7 @@ void Search::name_relations() {
         return a.name == hypotheses[h].effect->name && a.axis == hypotheses[h].axis_name() &&
                a.sensor == name(hypotheses[h].effect->site);
       });
+      break;
     }
   }
 }

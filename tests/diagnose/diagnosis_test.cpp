@@ -322,6 +322,26 @@ TEST(Diagnosis, AReferenceShowsThatTheBaseIsOff) {
   }
 }
 
+// Steps of fourteen times the noise: as long as the car drives evenly the force stays within one, and the error wanders.
+TEST(Diagnosis, WhatWandersBetweenCoarseStepsIsToldAsThem) {
+  MissionInput input = test::honest_mission(15);
+  constexpr double kStep = 0.06;
+  for (record::ImuSample& sample : input.imu.samples)
+    sample.dv.x() = kStep * std::round(sample.dv.x() / sample.dt / kStep) * sample.dt;
+  const Diagnosis d = diagnose::diagnose(input, kWithoutTwins, {});
+  const NoiseFinding* f = noise_named(d, "quantisation", "accel", "x");
+  ASSERT_NE(f, nullptr) << names(d);
+  EXPECT_NEAR(f->value, kStep, 1e-6);
+  EXPECT_GT(f->delta_log_likelihood, 20.0);
+  EXPECT_EQ(noise_named(d, "extra_gauss_markov_bias", "accel", "x"), nullptr);
+  EXPECT_EQ(noise_named(d, "flicker_noise", "accel", "x"), nullptr);
+  for (const Finding& found : d.findings) {
+    if (found.hypothesis.effect->site != Site::kAccel || !found.hypothesis.axis_name().starts_with('x')) continue;
+    ASSERT_FALSE(found.alternatives.empty());
+    EXPECT_EQ(found.alternatives.front().name, "quantisation");
+  }
+}
+
 TEST(Diagnosis, ASaturatedGyroIsFoundAndMended) {
   MissionInput input = test::honest_mission(11);
   double largest = 0.0;
