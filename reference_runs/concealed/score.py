@@ -6,6 +6,7 @@ import math
 import os
 import sys
 
+FALSE_ALARM = 0.05
 DETECTABLE = math.sqrt(17.07)  # sigmas of the smallest detectable size: alpha 0.1 %, power 80 % (Baarda)
 
 
@@ -16,9 +17,11 @@ def same_axis(effect, truth):
 
 
 def power(case):
-    """Probability that an effect of this size exceeds the threshold in use, which heeds all effects and onsets."""
+    """Probability that anything is raised: the effect exceeds the threshold in use, which heeds all effects and onsets, or chance raises
+    another, as in one of twenty recordings."""
     size, threshold = DETECTABLE * case["key"]["strength"], math.sqrt(case["diagnosis"]["threshold"])
-    return 0.5 * (math.erfc((threshold - size) / math.sqrt(2.0)) + math.erfc((threshold + size) / math.sqrt(2.0)))
+    exceeds = 0.5 * (math.erfc((threshold - size) / math.sqrt(2.0)) + math.erfc((threshold + size) / math.sqrt(2.0)))
+    return exceeds + (1.0 - exceeds) * FALSE_ALARM
 
 
 def expected(powers):

@@ -171,6 +171,8 @@ INSTANTIATE_TEST_SUITE_P(
         SpoiledEffect{"an axis of another effect", "{name: gyro_scale_factor, sensor: gyro, axis: zy, value: 0.01}",
                       "x | y | z"},
         SpoiledEffect{"an axis where there is one", "{name: gnss_time_offset, sensor: clock, axis: x, value: 0.01}", "axis"},
+        SpoiledEffect{"a base that moves", "{name: base_coordinate_offset, sensor: gnss, axis: n, value: 0.1, start_s: 208900}",
+                      "the base stays where it is"},
         SpoiledEffect{"no size", "{name: gyro_scale_factor, sensor: gyro, axis: z}", "'value' is missing"},
         SpoiledEffect{"a word for a size", "{name: gyro_scale_factor, sensor: gyro, axis: z, value: large}", "large"},
         SpoiledEffect{"a relation that is none", "{name: unknown, sensor: gyro, axis: x, relation: omega_z*f_w, value: 0.02}",
