@@ -66,7 +66,8 @@ RUNS = {
     "concealed/g-sensitivity-yx": car_with("gyro_g_sensitivity", "yx", 2e-3),
     # At two and four times the smallest size that the recording as it is would show.
     "twice/accel-scale-y": car_with("accel_scale_factor", "y", 0.0158), "four-times/accel-scale-y": car_with("accel_scale_factor", "y", 0.0316),
-    "twice/gyro-step-z": car_with("bias_step", "z", 0.002, 250.0), "four-times/g-sensitivity-zx": car_with("gyro_g_sensitivity", "zx", 3.3e-3),
+    "twice/gyro-step-z": car_with("bias_step", "z", 0.002, 250.0), "four-times/gyro-step-z": car_with("bias_step", "z", 0.004, 250.0),
+    "four-times/g-sensitivity-zx": car_with("gyro_g_sensitivity", "zx", 3.3e-3),
 }
 
 
