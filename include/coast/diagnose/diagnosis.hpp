@@ -149,7 +149,7 @@ struct DiagnosisOptions {
   /// `gnss.time_offset_s` by which turns of GNSS and IMU match best (io::inspect). Where it is far from the configured one, the
   /// search begins with a run there: no score that is linear about the configured one tells of it.
   std::optional<double> time_offset_s = {};
-  std::optional<Reference> reference = {};
+  std::optional<Reference> reference = {};  ///< looked at when all else is found, for base_coordinate_offset alone
 };
 
 /// Stepwise: the mission is run; of all hypotheses beside those taken the likeliest, by Bayes factor and by runs where there
