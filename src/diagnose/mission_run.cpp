@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "coast/record/error.hpp"
 #include "coast/study/outage_runs.hpp"
 
 namespace coast::diagnose {
@@ -18,10 +19,14 @@ MissionRun::MissionRun(MissionInput input, Grade grade, const std::vector<Effect
   solution_ = study::solve(mission_, mission_.options(), true, outputs, progress);
 }
 
-estimate::FilterResult forward(MissionInput input) {
+std::optional<estimate::FilterResult> forward(MissionInput input) {
   const study::PreparedMission mission(std::move(input.imu), std::move(input.gnss), std::move(input.setup), {});
   const estimate::ForwardFilter filter(mission.mission(), mission.model(), mission.options());
-  return filter.run(mission.start_state(filter), {});
+  try {
+    return filter.run(mission.start_state(filter), {});
+  } catch (const NumericalError&) {
+    return std::nullopt;
+  }
 }
 
 Fit MissionRun::fit() const {

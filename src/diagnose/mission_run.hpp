@@ -2,6 +2,7 @@
 // One run of the mission and what it says of the hypotheses; private to the room.
 
 #include <memory>
+#include <optional>
 
 #include "coast/diagnose/diagnosis.hpp"
 #include "coast/study/outage.hpp"
@@ -42,7 +43,10 @@ class MissionRun {
   Hypotheses hypotheses_;
 };
 
-/// A forward run alone, from the start that the input gives.
-[[nodiscard]] estimate::FilterResult forward(MissionInput input);
+/// Log-likelihood of what predicts nothing because the filter breaks down with it: finite, so that differences are numbers.
+inline constexpr double kBroken = -1e6;
+
+/// A forward run alone, from the start that the input gives; none where the filter breaks down.
+[[nodiscard]] std::optional<estimate::FilterResult> forward(MissionInput input);
 
 }  // namespace coast::diagnose

@@ -87,7 +87,8 @@ FittedEffect fitted_effect(const AddedNoise& from, const MissionInput& input, co
     noise.add_to(with);
     if (with.setup.start)
       with.setup.start_sensor_errors = sensor_states_in(layout_of(with), layout, input.setup.start_sensor_errors);
-    return forward(std::move(with)).log_likelihood - without;
+    const std::optional<estimate::FilterResult> run = forward(std::move(with));
+    return run ? run->log_likelihood - without : kBroken;
   };
   double x = std::log(from.root);
   double y = gain_at(x);
@@ -102,7 +103,7 @@ FittedEffect fitted_effect(const AddedNoise& from, const MissionInput& input, co
   }
   FittedEffect fitted{.noise = from, .log_sd = kStep, .gain = y};
   const double curvature = (2.0 * y - low - high) / (kStep * kStep);
-  if (curvature > 0.0) {
+  if (curvature > 0.0 && std::min(low, high) > kBroken) {
     fitted.log_sd = 1.0 / std::sqrt(curvature);
     const double vertex = x + 0.5 * (high - low) / (curvature * kStep);
     const double at_vertex = gain_at(vertex);

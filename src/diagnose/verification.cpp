@@ -30,10 +30,13 @@ class Blocks {
   std::size_t count_ = 0;
 };
 
-/// Log-likelihood of every block but for a constant, by a forward run; correlations between components are left out.
+/// Log-likelihood of every block but for a constant, by a forward run; correlations between components are left out. What breaks
+/// the filter predicts nothing.
 std::vector<double> log_likelihoods(const MissionInput& input, const Blocks& blocks) {
+  const std::optional<estimate::FilterResult> run = forward(input);
+  if (!run) return std::vector<double>(blocks.count(), kBroken);
   std::vector<double> sums(blocks.count(), 0.0);
-  for (const estimate::InnovationRecord& r : forward(input).innovations) {
+  for (const estimate::InnovationRecord& r : run->innovations) {
     if (!r.used) continue;
     double log_det = 0.0;
     for (int i = 0; i < r.dof && i < 3; ++i) log_det += 2.0 * std::log(r.sd(i));

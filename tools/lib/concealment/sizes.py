@@ -28,6 +28,18 @@ def innovations(folder):
                 for r in csv.DictReader(file)}
 
 
+def in_sigmas(without, with_it):
+    """What an effect adds to the innovations: a series in time of each component."""
+    series = [[] for _ in range(COMPONENTS)]
+    for (kind, t), before in sorted(without.items(), key=lambda item: item[0][1]):
+        if (kind, t) not in with_it:
+            continue
+        first = 0 if "position" in kind else 3
+        for i, (b, a) in enumerate(zip(with_it[kind, t], before)):
+            series[first + i].append((b[0] - a[0]) / a[1])
+    return series
+
+
 class Mission:
     """One of which innovations are asked again and again; its sensors' noise is the same each time."""
 
@@ -42,16 +54,10 @@ class Mission:
         return result
 
     def difference(self, effect, axis, size, onset, realisation=0):
-        """What the effect adds to the innovations, in sigmas: a series in time of each component."""
-        with_it = self.innovations([(effect, axis, size, onset)], realisation)
-        series = [[] for _ in range(COMPONENTS)]
-        for (kind, t), before in sorted(self.without.items(), key=lambda item: item[0][1]):
-            if (kind, t) not in with_it:
-                continue
-            first = 0 if "position" in kind else 3
-            for i, (b, a) in enumerate(zip(with_it[kind, t], before)):
-                series[first + i].append((b[0] - a[0]) / a[1])
-        return series
+        return in_sigmas(self.without, self.innovations([(effect, axis, size, onset)], realisation))
+
+    def largest_rate(self, axis):
+        return max(abs(state[4][axis]) for state in self.truth.states)
 
 
 def norm(series):
@@ -65,7 +71,7 @@ def of_linear_effect(seen, effect, axis, onset):
 
 def of_clipping(seen, effect, axis, times):
     """The limit at which what is cut off moves the innovations by so many times the smallest detectable."""
-    low, high = 0.0, max(abs(state[4][axis]) for state in seen.truth.states)
+    low, high = 0.0, seen.largest_rate(axis)
     for _ in range(12):
         limit = 0.5 * (low + high)
         if norm(seen.difference(effect, axis, limit, -1.0)) > times * DETECTABLE:

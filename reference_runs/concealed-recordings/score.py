@@ -1,0 +1,83 @@
+"""score.py FOLDER: opens the keys and says how often what was found is what was concealed; JSON on standard output. What a recording shows
+as it is counts for nothing, where the same is found in the same size."""
+
+import glob
+import json
+import math
+import os
+import sys
+
+OWN = math.sqrt(17.07)  # sigmas by which an effect of the recording's own has to differ to be another: the smallest detectable size (Baarda)
+AS_IS = {"car": 900, "rover-h": 901, "rover-k": 902}
+
+
+def place(e):
+    return e["name"], e["sensor"], e.get("relation", e["axis"])
+
+
+def size(e):
+    return e["parameters"][0]["value"]
+
+
+def is_own(effect, as_is):
+    return any(place(effect) == place(own) and abs(size(effect) - size(own)) < OWN * effect["parameters"][0].get("std", 0.0) for own in as_is)
+
+
+def score(truth, effects, as_is):
+    new = [e for e in effects if not is_own(e, as_is)]
+    right = next((e for e in new if place(e) == place(truth)), None)
+    s = {"detected": bool(new), "found": right is not None,
+         "named": right is not None or any(place(o) == place(truth) for e in new for o in e["confounded_with"]),
+         "site": any(e["sensor"] == truth["sensor"] and (e["axis"] == truth["axis"] or ("relation" in e and e["axis"] == truth["axis"][:1])) for e in new),
+         "extra": sum(place(e) != place(truth) for e in new), "said": [f"{e['name']} {e['sensor']} {e.get('relation', e['axis'])}".strip() for e in new]}
+    if right is None:
+        return s
+    before = sum(size(e) for e in as_is if place(e) == place(truth))
+    s["held_out"] = right["held_out_gain"] > 0.0 if "held_out_gain" in right else None
+    if right["parameters"][0].get("std"):
+        s["deviation"] = (size(right) - before - truth["value"]) / right["parameters"][0]["std"]
+    if "t_start_s" in truth:
+        s["onset_s"], s["onset_std_s"] = right["t_start_s"] - truth["t_start_s"], right.get("t_start_std_s")
+    return s
+
+
+def share(values):
+    values = [v for v in values if v is not None]
+    return {"of": len(values), "share": sum(values) / len(values)} if values else {"of": 0, "share": None}
+
+
+def table(scored):
+    hits = [s for s in scored if s["detected"]]
+    return {"detected": share(s["detected"] for s in scored), "found": share(s["found"] for s in scored), "among": share(s["named"] for s in scored),
+            "sensor_and_axis": share(s["site"] for s in hits), "nothing_else": share(s["extra"] == 0 for s in hits),
+            "held_out_better": share(s.get("held_out") for s in hits), "inside_95": share(abs(s["deviation"]) < 1.96 for s in hits if "deviation" in s),
+            "onset_inside_95": share(abs(s["onset_s"]) <= 1.96 * s["onset_std_s"] for s in hits if s.get("onset_std_s")),
+            "onset_within_2_s": share(abs(s["onset_s"]) <= 2.0 for s in hits if "onset_s" in s)}
+
+
+def main():
+    cases = {}
+    for path in glob.glob(f"{sys.argv[1]}/*.json"):
+        with open(path) as file:
+            cases[int(os.path.basename(path).split(".")[0])] = json.load(file)
+    as_is = {name: cases[number]["diagnosis"]["effects"] for name, number in AS_IS.items() if number in cases}
+    scored = {}
+    for number, case in sorted(cases.items()):
+        truth = case["key"]["effect"]
+        if truth:
+            own = as_is[case["key"]["recording"]]
+            scored[number] = {"recording": case["key"]["recording"], "truth": truth, **score(truth, case["diagnosis"]["effects"], own)}
+    result = {"cases": len(scored)}
+    for group, numbers in {"car": range(100), "rover": range(100, 200), "concealed": range(200)}.items():
+        here = [s for k, s in scored.items() if k in numbers]
+        result[group] = {"all": table(here), **{f"{strength:g}": table([s for s in here if s["truth"]["strength"] == strength])
+                                                for strength in sorted({s["truth"]["strength"] for s in here})}}
+    result["falsified"] = table([s for k, s in scored.items() if k >= 200])
+    result["each"] = {f"{k}": {"recording": s["recording"], "effect": " ".join(place(s["truth"])).strip(), "strength": s["truth"].get("strength"),
+                               "value": s["truth"]["value"], "found": s["found"], "among": s["named"], "said": s["said"],
+                               **{key: s[key] for key in ("deviation", "onset_s") if key in s}} for k, s in scored.items()}
+    json.dump(result, sys.stdout, indent=1)
+    print()
+
+
+main()
