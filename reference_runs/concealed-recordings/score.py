@@ -1,5 +1,5 @@
 """score.py FOLDER: opens the keys and says how often what was found is what was concealed; JSON on standard output. What a recording shows
-as it is counts for nothing, where the same is found in the same size."""
+as it is counts for nothing, where the same is found in the same size; of the effect that is concealed it adds to it."""
 
 import glob
 import json
@@ -16,7 +16,8 @@ def place(e):
 
 
 def size(e):
-    return e["parameters"][0]["value"]
+    value = e["parameters"][0]["value"]
+    return abs(value) if e["name"] == "saturation" else value  # the lower limit is the same
 
 
 def is_own(effect, as_is):
@@ -32,10 +33,12 @@ def score(truth, effects, as_is):
          "extra": sum(place(e) != place(truth) for e in new), "said": [f"{e['name']} {e['sensor']} {e.get('relation', e['axis'])}".strip() for e in new]}
     if right is None:
         return s
-    before = sum(size(e) for e in as_is if place(e) == place(truth))
     s["held_out"] = right["held_out_gain"] > 0.0 if "held_out_gain" in right else None
+    own = truth["as_is"] if "as_is" in truth else sum(size(e) for e in as_is if place(e) == place(truth))
+    s["found_value"] = size(right)
     if right["parameters"][0].get("std"):
-        s["deviation"] = (size(right) - before - truth["value"]) / right["parameters"][0]["std"]
+        s["deviation"] = (size(right) - own - truth["value"]) / right["parameters"][0]["std"]
+        s["deviation_alone"] = (size(right) - truth["value"]) / right["parameters"][0]["std"]
     if "t_start_s" in truth:
         s["onset_s"], s["onset_std_s"] = right["t_start_s"] - truth["t_start_s"], right.get("t_start_std_s")
     return s
@@ -51,6 +54,7 @@ def table(scored):
     return {"detected": share(s["detected"] for s in scored), "found": share(s["found"] for s in scored), "among": share(s["named"] for s in scored),
             "sensor_and_axis": share(s["site"] for s in hits), "nothing_else": share(s["extra"] == 0 for s in hits),
             "held_out_better": share(s.get("held_out") for s in hits), "inside_95": share(abs(s["deviation"]) < 1.96 for s in hits if "deviation" in s),
+            "inside_95_as_if_clean": share(abs(s["deviation_alone"]) < 1.96 for s in hits if "deviation_alone" in s),
             "onset_inside_95": share(abs(s["onset_s"]) <= 1.96 * s["onset_std_s"] for s in hits if s.get("onset_std_s")),
             "onset_within_2_s": share(abs(s["onset_s"]) <= 2.0 for s in hits if "onset_s" in s)}
 
@@ -74,8 +78,8 @@ def main():
                                                 for strength in sorted({s["truth"]["strength"] for s in here})}}
     result["falsified"] = table([s for k, s in scored.items() if k >= 200])
     result["each"] = {f"{k}": {"recording": s["recording"], "effect": " ".join(place(s["truth"])).strip(), "strength": s["truth"].get("strength"),
-                               "value": s["truth"]["value"], "found": s["found"], "among": s["named"], "said": s["said"],
-                               **{key: s[key] for key in ("deviation", "onset_s") if key in s}} for k, s in scored.items()}
+                               "value": s["truth"]["value"], "as_is": s["truth"].get("as_is"), "found": s["found"], "among": s["named"], "said": s["said"],
+                               **{key: s[key] for key in ("found_value", "deviation", "onset_s", "onset_std_s") if key in s}} for k, s in scored.items()}
     json.dump(result, sys.stdout, indent=1)
     print()
 

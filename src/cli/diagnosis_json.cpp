@@ -33,12 +33,17 @@ Json alternative_json(const diagnose::Alternative& a, std::string_view separatin
           {"separating_manoeuvre", separating_manoeuvre}};
 }
 
+/// Of another reading against the one told; above one where it would be likelier, but more effects were not looked for.
+std::string odds(double log_odds) {
+  return log_odds < 0.0 ? fmt::format("{:.0f} : 1", std::exp(-log_odds)) : fmt::format("1 : {:.0f}", std::exp(log_odds));
+}
+
 std::string other_readings(const std::vector<diagnose::Alternative>& alternatives, std::string_view separating_manoeuvre) {
   if (alternatives.empty()) return {};
   std::string text = " It could also be";
   for (std::size_t i = 0; i < std::min<std::size_t>(3, alternatives.size()); ++i)
-    text += fmt::format("{} {}{}{} (1 : {:.0f})", i == 0 ? "" : ",", alternatives[i].name,
-                        alternatives[i].axis.empty() ? "" : " ", alternatives[i].axis, std::exp(alternatives[i].log_odds));
+    text += fmt::format("{} {}{}{} ({})", i == 0 ? "" : ",", alternatives[i].name, alternatives[i].axis.empty() ? "" : " ",
+                        alternatives[i].axis, odds(alternatives[i].log_odds));
   return text + fmt::format(". What would tell: {}", separating_manoeuvre);
 }
 

@@ -229,8 +229,8 @@ class Search {
 };
 
 [[nodiscard]] Alternative alternative(const FittedEffect& fit, double log_odds);
-/// Alternatives are told where the data alone, or with what is plausible, hold them for more than a thousandth as likely, by
-/// the larger of the two.
+/// Alternatives are told, with the larger of the two, where the data alone and with what is plausible hold them for more than a
+/// thousandth as likely: one of them alone names the whole catalogue beside an effect that is hardly more likely than nothing.
 [[nodiscard]] std::optional<double> log_odds_told(double by_data, double by_evidence);
 /// What a random effect costs in evidence: that it is this one of all, of this size.
 /// @param log_sd  of the root of its variance

@@ -194,8 +194,8 @@ bool Search::last_is_confirmed() {
 }
 
 std::optional<double> log_odds_told(double by_data, double by_evidence) {
-  if (std::min(by_data, by_evidence) >= kLogOdds) return std::nullopt;
-  return std::max(by_data, by_evidence);
+  const double odds = std::max(by_data, by_evidence);
+  return odds < kLogOdds ? std::optional(odds) : std::nullopt;
 }
 
 std::optional<double> Search::gained_by_runs(const Suspicion& s) const {
