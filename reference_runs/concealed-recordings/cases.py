@@ -84,8 +84,8 @@ def falsified(run, recording, draw, case):
 
 def size_of(effect, seen, draw, strength, onset):
     """Axis and size of an effect; no larger than plausible, or weaker than asked for."""
-    while True:
-        axis = draw.choice(effect.axes)
+    first = draw.choice(effect.axes)
+    for axis in (first, *(a for a in effect.axes if a != first)):
         if effect.name == "saturation":
             return {"axis": effects.label(axis), "strength": strength, "value": sizes.of_clipping(seen, effect, axis, strength)}, axis
         smallest, as_is = seen.shown(effect, axis, onset)
@@ -93,6 +93,7 @@ def size_of(effect, seen, draw, strength, onset):
         if possible:  # else it is another axis: this one has a state of its own that explains all of it
             return {"axis": effects.label(axis), "strength": possible[-1], "value": draw.choice((-1.0, 1.0)) * possible[-1] * smallest,
                     "smallest_detectable": smallest, "as_is": as_is}, axis
+    sys.exit(f"{effect.name}: no axis shows it at a plausible size")
 
 
 def concealed(run, seen, clock, draw, case, folder):

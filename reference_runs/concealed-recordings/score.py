@@ -78,8 +78,8 @@ def main():
                                                 for strength in sorted({s["truth"]["strength"] for s in here})}}
     result["falsified"] = table([s for k, s in scored.items() if k >= 200])
     result["each"] = {f"{k}": {"recording": s["recording"], "effect": " ".join(place(s["truth"])).strip(), "strength": s["truth"].get("strength"),
-                               "value": s["truth"]["value"], "as_is": s["truth"].get("as_is"), "found": s["found"], "among": s["named"], "said": s["said"],
-                               **{key: s[key] for key in ("found_value", "deviation", "onset_s", "onset_std_s") if key in s}} for k, s in scored.items()}
+                               "value": float(f'{s["truth"]["value"]:.3g}'), "as_is": float(f'{s["truth"].get("as_is", 0.0):.3g}'), "found": s["found"], "among": s["named"], "said": s["said"],
+                               **{key: float(f"{s[key]:.3g}") for key in ("found_value", "deviation", "onset_s", "onset_std_s") if s.get(key) is not None}} for k, s in scored.items()}
     json.dump(result, sys.stdout, indent=1)
     print()
 
