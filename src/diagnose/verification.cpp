@@ -30,8 +30,8 @@ class Blocks {
   std::size_t count_ = 0;
 };
 
-/// Log-likelihood of every block but for a constant, by a forward run; correlations between components are left out. What breaks
-/// the filter predicts nothing.
+/// Log-likelihood of every block but for a constant, by a forward run; correlations between components are left out. What
+/// breaks the filter predicts nothing.
 std::vector<double> log_likelihoods(const MissionInput& input, const Blocks& blocks) {
   const std::optional<estimate::FilterResult> run = forward(input);
   if (!run) return std::vector<double>(blocks.count(), kBroken);
