@@ -36,8 +36,9 @@ STRENGTHS = (1.0, 2.0, 4.0, 10.0)
 PLAUSIBLE = {"gyro_scale_factor": 0.1, "accel_scale_factor": 0.1}
 CONCEALED = [("gyro_scale_factor", "gyro"), ("accel_scale_factor", "accel"), ("gyro_g_sensitivity", "gyro"), ("gnss_time_offset", "clock"),
              ("saturation", "gyro"), ("bias_step", "gyro"), ("bias_step", "accel")]
-# 0 to 99: the car; from 100 on: the RC car's runs; from 200 on: falsified configurations. 900 and on: the recordings as they are.
-CASES = [900, 901, 902, *range(100, 156), *range(216, 224), *range(200, 208), *range(28)]
+# 0 to 99: the car; from 100 on: the RC car's runs, whose error model has all scale factors as states (112 to 119 conceal none); from 200 on:
+# falsified configurations. 900 and on: the recordings as they are.
+CASES = [900, 901, 902, *range(100, 112), 122, 123, 126, 127, 216, 217, 219, *range(200, 205), 0, 1, 4, 5]
 
 
 def recording_of(case):
