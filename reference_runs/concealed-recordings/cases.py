@@ -7,17 +7,15 @@ import json
 import math
 import os
 import random
-import re
 import shutil
 import subprocess
 import sys
 
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), "../../tools/lib"))
 
-from concealment import effects, recorded, sizes  # noqa: E402
+from concealment import configured, effects, recorded, sizes  # noqa: E402
 
 DATA = os.environ["COAST_DATA"]
-CONFIGS = os.path.abspath("../../configs/recordings")
 # What the recordings show of antenna and clock, as they are (missing-physics-recordings), is told; nothing of it is estimated on the way.
 CAR = {"config": "car-drive-0708", "changes": [("time_offset_s: -0.1", "time_offset_s: -0.128")], "file": "car-drive-0708/imu_gpst.csv.gz",
        "columns": "time=1,accel=2:3:4,gyro=5:6:7", "gyro_unit": 1.0, "lever_arm": (0.0, -0.05, 0.0), "offset": -0.128, "clock": 0.0}
@@ -50,16 +48,7 @@ def recording_of(case):
 
 
 def run_of(recording):
-    with open(f"{CONFIGS}/{recording['config']}.yaml") as file:
-        text = file.read()
-    text = text.replace("error_model: ../", f"error_model: {os.path.dirname(CONFIGS)}/").replace("error_model: car-", f"error_model: {CONFIGS}/car-")
-    text = text.replace("${COAST_DATA}", DATA)
-    for old, new in recording["changes"]:
-        if old not in text:
-            sys.exit(f"{recording['config']}: no '{old}'")
-        text = text.replace(old, new)
-    text = "\n".join(line for line in text.split("\n") if line.split(":")[0].strip() not in ("lever_arm_sd_m", "time_offset_sd_s"))
-    return re.sub(r"\n(outages|reference|output):[^\n]*(\n  [^\n]*)*", "", text)
+    return configured.run(recording["config"], [("${COAST_DATA}", DATA), *recording["changes"]], ("lever_arm_sd_m", "time_offset_sd_s"))
 
 
 @functools.cache

@@ -3,33 +3,22 @@ into the recording's own IMU data; what each finds goes to OUT/numbers.json. A r
 
 import json
 import os
-import re
 import subprocess
 import sys
 
-CONFIGS = os.path.abspath("../../configs/recordings")
+sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), "../../tools/lib"))
+
+from concealment import configured  # noqa: E402
+
 DATA = os.environ["COAST_DATA"]
 NUMBERED = "time=1,accel=2:3:4,gyro=5:6:7"
 CAR_IMU = f"{DATA}/car-drive-0708/imu_gpst.csv.gz"
-
-
-def config(name, changes=(), drop=()):
-    with open(f"{CONFIGS}/{name}.yaml") as file:
-        text = file.read()
-    text = text.replace("error_model: ../", f"error_model: {os.path.dirname(CONFIGS)}/").replace("error_model: car-", f"error_model: {CONFIGS}/car-")
-    for old, new in changes:
-        if old not in text:
-            sys.exit(f"{name}: no '{old}'")
-        text = text.replace(old, new)
-    return "\n".join(line for line in text.split("\n") if line.split(":")[0].strip() not in drop)
-
-
 FREE = ("lever_arm_sd_m", "time_offset_sd_s")  # what is to be found is not to be estimated on the way
 CAR = "car-drive-0708"
 
 
 def car(*changes):
-    return lambda out: config(CAR, changes, FREE)
+    return lambda out: configured.run(CAR, changes, FREE)
 
 
 def car_with(effect, axis, size, onset=0.0):
@@ -37,23 +26,23 @@ def car_with(effect, axis, size, onset=0.0):
         target = f"{out}/imu.csv.gz"
         subprocess.run([sys.executable, CONCEAL, "--into", CAR_IMU, "--columns", NUMBERED, "--effect", effect, "--axis", axis, "--size", str(size),
                         "--onset", str(onset), "--out", target], check=True)
-        return config(CAR, [("${COAST_DATA}/car-drive-0708/imu_gpst.csv.gz", target)], FREE)
+        return configured.run(CAR, [("${COAST_DATA}/car-drive-0708/imu_gpst.csv.gz", target)], FREE)
     return make
 
 
 def rolling(mounting):
     """The car is told that it neither slides nor lifts, and where it rolls to. The published mounting is the opposite rotation."""
     wheels = "vehicle: {kind: car, mounting_pitch_deg: %g, mounting_yaw_deg: %g, mounting_sd_deg: 0}\n" % mounting
-    return lambda out: config(CAR, [("outages:", wheels + "outages:")], FREE)
+    return lambda out: configured.run(CAR, [("outages:", wheels + "outages:")], FREE)
 
 
 def rover(run):
-    return lambda out: config("rc-rover-mimu", [("h_imu", f"{run}_imu"), ("h_rtk", f"{run}_rtk"), ("time_offset_s: 0.2", "time_offset_s: 0")], FREE)
+    return lambda out: configured.run("rc-rover-mimu", [("h_imu", f"{run}_imu"), ("h_rtk", f"{run}_rtk"), ("time_offset_s: 0.2", "time_offset_s: 0")], FREE)
 
 
 RUNS = {
-    "as-is/car-drive-0708": car(), "as-is/rc-rover-mimu": lambda out: config("rc-rover-mimu"),
-    "as-is/quadrotor-mimu": lambda out: config("quadrotor-mimu"),
+    "as-is/car-drive-0708": car(), "as-is/rc-rover-mimu": lambda out: configured.run("rc-rover-mimu"),
+    "as-is/quadrotor-mimu": lambda out: configured.run("quadrotor-mimu"),
     "falsified/lever-arm-0.3": car(("lever_arm_m: [0, -0.05, 0]", "lever_arm_m: [0.3, -0.05, 0]")),
     "falsified/mounting-zero": rolling((0.0, 0.0)), "as-is/car-drive-0708-mounting": rolling((6.79, -5.35)),
     "falsified/time-offset-0.05": car(("time_offset_s: -0.1", "time_offset_s: -0.05")),
@@ -77,7 +66,7 @@ def one(name, make, out):
     if not os.path.exists(kept):
         os.makedirs(folder, exist_ok=True)
         with open(f"{folder}/run.yaml", "w") as file:
-            file.write(re.sub(r"\n(outages|reference|output):[^\n]*(\n  [^\n]*)*", "", make(folder)))
+            file.write(make(folder))
         subprocess.run([COAST, "diagnose", f"{folder}/run.yaml", "--out", f"{folder}/diagnosis", "--twins", "0", "--threads", "1", "--quiet"], check=True)
     with open(kept) as file:
         d = json.load(file)
