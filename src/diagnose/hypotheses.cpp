@@ -95,16 +95,19 @@ Signals SignalTable::at(std::size_t sample, const Eigen::Vector3d& omega_b, cons
   return s;
 }
 
-Eigen::Vector3d SignalTable::mean_force_b(std::size_t sample) const {
+SignalTable::Means SignalTable::means_about(std::size_t sample) const {
   const std::size_t from = sample > half_ ? sample - half_ : 0;
   const std::size_t to = std::min(imu_.samples.size(), sample + half_);
-  Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+  Eigen::Vector3d turned = Eigen::Vector3d::Zero();
+  Eigen::Vector3d gained = Eigen::Vector3d::Zero();
   double time = 0.0;
   for (std::size_t i = from; i < to; ++i) {
-    sum += imu_.samples[i].dv;
+    turned += imu_.samples[i].dtheta;
+    gained += imu_.samples[i].dv;
     time += imu_.samples[i].dt;
   }
-  return time > 0.0 ? Eigen::Vector3d(sum / time) : Eigen::Vector3d::Zero();
+  if (!(time > 0.0)) return {};
+  return {turned / time, gained / time};
 }
 
 Hypotheses::Hypotheses(const estimate::Mission& mission, const estimate::FilterOptions& filter, Grade grade,
@@ -173,9 +176,10 @@ void Hypotheses::add_fix_errors(const estimate::MeasurementView& m, Eigen::Matri
   s.C_b_e = nav.q_b_e.toRotationMatrix();
   s.C_n_e = m.context.C_n_e;
   s.omega_b = m.context.omega_eb_b;
-  s.v_ea_e = nav.v_eb_e + s.C_b_e * s.omega_b.cross(m.context.lever_arm_b);
+  const SignalTable::Means means = signals_.means_about(m.sample);
   const Eigen::Vector3d earth(0.0, 0.0, mission_.earth_rate);
-  s.a_ea_e = s.C_b_e * signals_.mean_force_b(m.sample) + geo::gravity_e(nav.r_eb_e) - 2.0 * earth.cross(nav.v_eb_e);
+  s.v_ea_e = nav.v_eb_e + (s.C_b_e * means.omega_b - earth).cross(s.C_b_e * m.context.lever_arm_b);
+  s.a_ea_e = s.C_b_e * means.f_b + geo::gravity_e(nav.r_eb_e) - 2.0 * earth.cross(nav.v_eb_e);
   s.elapsed = nav.t - mission_.imu.samples.front().t;
   const bool position = m.kind == estimate::UpdateKind::kGnssPosition;
   Eigen::Matrix3Xd columns(3, D.cols());

@@ -14,11 +14,8 @@ constexpr double kNear = 1.0;       // likewise, from where on what is left may 
 constexpr double kMuch = 100.0;     // log-likelihood, from where on noise that was fitted without it stood for it
 constexpr double kUncertain = 0.1;  // of a likelihood ratio whose variance is that of some hundred draws
 
-/// A start that the data decide: it was found by a run that knew nothing of the effect, which may be in it. The filter is
-/// linearised about what that run found of the sensors too: with biases at their prior mean, tilts are wrong by mrad until the
-/// first manoeuvres, and the square of a tilt looks like a vertical bias that ends there.
-void loosen_start(const study::PreparedMission& mission, const estimate::SmoothedKnot& smoothed,
-                  const estimate::StateLayout& layout, MissionInput& input) {
+/// A start that the data decide: it was found by a run that knew nothing of the effect, which may be in it.
+void loosen_start(const study::PreparedMission& mission, const estimate::SmoothedKnot& smoothed, MissionInput& input) {
   constexpr double kPosition = 1.0;  // m
   constexpr double kVelocity = 0.3;  // m/s
   constexpr double kAttitude = 3.0;  // times the alignment's
@@ -31,7 +28,6 @@ void loosen_start(const study::PreparedMission& mission, const estimate::Smoothe
     if (start.gyro_bias_sd) *start.gyro_bias_sd *= kAttitude;
   }
   input.setup.start = start;
-  input.setup.start_sensor_errors = sensor_states_in(layout_of(input), layout, smoothed.x);
 }
 
 }  // namespace
@@ -125,7 +121,10 @@ void Search::run_again() {
 void Search::run_from(const MissionRun& last) {
   current_ = without(taken_, input_, last.hypotheses(), last.path(), last.mission(), last.layout());
   model_noise(current_);
-  loosen_start(last.prepared(), last.solution().smoothed.front(), last.layout(), current_);
+  const estimate::SmoothedKnot& start = last.solution().smoothed.front();
+  loosen_start(last.prepared(), start, current_);
+  if (!sensors_at_start_) sensors_at_start_.emplace(last.layout(), start.x);
+  current_.setup.start_sensor_errors = sensor_states_in(layout_of(current_), sensors_at_start_->layout, sensors_at_start_->x);
   run_current();
 }
 

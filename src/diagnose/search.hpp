@@ -206,6 +206,14 @@ class Search {
   Grade grade_;
   std::optional<estimate::NoiseFitChoice> asked_for_;  ///< noise that the run estimates
   MissionInput current_;
+  /// The filter is linearised about what the first run found of the sensors: with biases at their prior mean, tilts are wrong by
+  /// mrad until the first manoeuvres, and the square of a tilt looks like a vertical bias that ends there. Of the first alone:
+  /// a prior that follows every run is one more thing that fits, by steps that end nowhere, and runs are compared by likelihood.
+  struct SensorsAtStart {
+    estimate::StateLayout layout;
+    Eigen::VectorXd x;
+  };
+  std::optional<SensorsAtStart> sensors_at_start_;
   std::unique_ptr<MissionRun> run_;
   std::vector<Taken> taken_;
   std::vector<Eigen::Index> refused_;   ///< until another is taken

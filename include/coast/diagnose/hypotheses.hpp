@@ -27,8 +27,12 @@ class SignalTable {
   /// @param omega_b, f_b  of the sample, body axes, freed of errors where they are known  @param nav  near it
   [[nodiscard]] Signals at(std::size_t sample, const Eigen::Vector3d& omega_b, const Eigen::Vector3d& f_b,
                            const record::NavState& nav) const;
-  /// Specific force over a tenth of a second about the beginning of a sample, body axes, m/s^2.
-  [[nodiscard]] Eigen::Vector3d mean_force_b(std::size_t sample) const;
+  /// Over a tenth of a second about the beginning of a sample, body axes, as measured.
+  struct Means {
+    Eigen::Vector3d omega_b = Eigen::Vector3d::Zero();  ///< against inertial space, rad/s
+    Eigen::Vector3d f_b = Eigen::Vector3d::Zero();      ///< m/s^2
+  };
+  [[nodiscard]] Means means_about(std::size_t sample) const;
 
  private:
   const record::ImuRecording& imu_;

@@ -110,14 +110,14 @@ class Recording:
         conceal(self.source, target, self.columns, effect, axis, size, onset, self.gyro_unit)
         return sizes.in_sigmas(self.without, self.innovations(self.run.replace(self.source, target)))
 
-    def shown(self, effect, axis, onset):
-        """The smallest size that would be seen of a linear effect, and what the recording shows of it as it is: least squares of its
-        innovations upon what the effect adds to them."""
-        added = self.difference(effect, axis, effect.probe, onset)
+    def shown(self, effect, axis, onset, probe):
+        """The smallest size that would be seen of an effect that is linear about the size of `probe`, and what the recording shows of it as
+        it is: least squares of its innovations upon what the effect adds to them."""
+        added = self.difference(effect, axis, probe, onset)
         as_is = sizes.in_sigmas({key: [(0.0, sd) for _, sd in values] for key, values in self.without.items()}, self.without)
         squares = sizes.norm(added) ** 2
         both = sum(a * b for x, y in zip(added, as_is) for a, b in zip(x, y))
-        return effect.probe * sizes.DETECTABLE / math.sqrt(squares), effect.probe * both / squares
+        return probe * sizes.DETECTABLE / math.sqrt(squares), probe * both / squares
 
     def span(self):
         """First and last tag."""
