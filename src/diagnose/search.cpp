@@ -123,9 +123,23 @@ void Search::run_from(const MissionRun& last) {
   model_noise(current_);
   const estimate::SmoothedKnot& start = last.solution().smoothed.front();
   loosen_start(last.prepared(), start, current_);
-  if (!sensors_at_start_) sensors_at_start_.emplace(last.layout(), start.x);
+  if (!sensors_at_start_) sensors_at_start_ = SensorsAtStart{last.layout(), start.x};
+  if (sensors_are_elsewhere(last)) {
+    current_.setup.start_sensor_errors.resize(0);  // about the prior mean
+    run_current();
+    sensors_at_start_ = SensorsAtStart{run_->layout(), run_->solution().smoothed.front().x};
+  }
   current_.setup.start_sensor_errors = sensor_states_in(layout_of(current_), sensors_at_start_->layout, sensors_at_start_->x);
   run_current();
+}
+
+bool Search::sensors_are_elsewhere(const MissionRun& last) const {
+  constexpr double kFar = 2.0;  // sd of what is known of the sensors beforehand
+  const Eigen::VectorXd found = last.solution().smoothed.front().x.head(last.layout().sensor_end());
+  const Eigen::VectorXd assumed = sensor_states_in(last.layout(), sensors_at_start_->layout, sensors_at_start_->x);
+  const Eigen::VectorXd sd =
+      last.prepared().start_state(*last.solution().filter).P.diagonal().head(last.layout().sensor_end()).cwiseSqrt();
+  return ((found - assumed).cwiseAbs().array() > kFar * sd.array()).any();
 }
 
 double Search::likelihood_from(const MissionRun& last) {

@@ -107,6 +107,8 @@ class Search {
   /// may be too long, or, where nothing is linear, wrong. @return  whether they moved at all
   bool run_moved(const std::vector<Taken>& before);
   void run_current();
+  /// Whether a run found errors of the sensors far from those about which it was linearised.
+  [[nodiscard]] bool sensors_are_elsewhere(const MissionRun& last) const;
   void model_noise(MissionInput& input) const;
 
   // Random effects, converters, and noise that is stated (search_noise.cpp).
@@ -206,9 +208,10 @@ class Search {
   Grade grade_;
   std::optional<estimate::NoiseFitChoice> asked_for_;  ///< noise that the run estimates
   MissionInput current_;
-  /// The filter is linearised about what the first run found of the sensors: with biases at their prior mean, tilts are wrong by
-  /// mrad until the first manoeuvres, and the square of a tilt looks like a vertical bias that ends there. Of the first alone:
-  /// a prior that follows every run is one more thing that fits, by steps that end nowhere, and runs are compared by likelihood.
+  /// The filter is linearised about what a run found of the sensors: with biases at their prior mean, tilts are wrong by mrad
+  /// until the first manoeuvres, and the square of a tilt looks like a vertical bias that ends there. Not of every run: a prior
+  /// that follows each is one more thing that fits, by steps that end nowhere, and runs are compared by their likelihoods. The
+  /// first run stands until what it took for errors of the sensors has another explanation.
   struct SensorsAtStart {
     estimate::StateLayout layout;
     Eigen::VectorXd x;

@@ -7,6 +7,7 @@
 #include "coast/geo/earth.hpp"
 #include "coast/geo/units.hpp"
 #include "coast/noise/chi_square.hpp"
+#include "coast/study/interpolation.hpp"
 #include "coast/study/solution.hpp"
 #include "diagnose/concealed.hpp"
 
@@ -122,6 +123,49 @@ TEST(Examination, WhatHasStartedIsSeenBesideTheOthers) {
   // The others are what they are without: but for the rounding of sums, which may be grouped otherwise.
   const Eigen::MatrixXd without = examined.examine(0).information;
   EXPECT_LT((e.information.topLeftCorner(n, n) - without).norm(), 1e-9 * without.norm());
+}
+
+// Against differences of the true antenna's positions over a tenth of a second. Gyros that shake have half a metre per second
+// at the antenna at any one instant.
+TEST(Hypotheses, AShiftOfTheTimeMovesAFixAsTheAntennaGoesAndNotAsItShakes) {
+  constexpr double kRate = 0.5;        // rad/s
+  constexpr double kFrequency = 14.7;  // Hz
+  constexpr double kHalf = 0.05;       // s
+  auto [input, truth] = test::honest_mission_with_truth(18, 220.0);
+  const geo::GpsTime start = input.imu.samples.front().t;
+  for (record::ImuSample& sample : input.imu.samples)
+    sample.dtheta.x() += kRate * sample.dt * std::sin(2.0 * geo::kPi * kFrequency * (sample.t - start));
+  const study::PreparedMission mission(input.imu, input.gnss, input.setup, {});
+  const std::vector<record::NavState>& path = truth.states;
+  const Hypotheses hypotheses(mission.mission(), mission.options(), Grade::kIndustrial, path, {});
+  const auto offset =
+      std::ranges::find_if(hypotheses.all(), [](const Hypothesis& h) { return h.effect->name == "gnss_time_offset"; });
+  const estimate::StateLayout layout(input.setup.model, input.setup.C_s_b, input.setup.filter.auxiliary);
+  const auto at = [&](geo::GpsTime t) {
+    const auto behind = std::ranges::lower_bound(path, t, {}, &record::NavState::t);
+    return study::interpolate(*std::prev(behind), *behind, t);
+  };
+  const auto antenna = [&](geo::GpsTime t) -> Eigen::Vector3d { return at(t).r_eb_e + at(t).q_b_e * input.setup.lever_arm_b; };
+  double largest_shake = 0.0;
+  double farthest = 0.0;
+  for (const record::GnssFix& fix : mission.mission().gnss.fixes) {
+    if (fix.t - start < 1.0 || path.back().t - fix.t < 1.0) continue;
+    const record::NavState nav = at(fix.t);
+    const auto sample = std::ranges::upper_bound(mission.mission().imu.samples, fix.t, {}, &record::ImuSample::t);
+    const Eigen::Vector3d omega_b = sample->dtheta / sample->dt;
+    const estimate::UpdateContext context{layout, input.setup.lever_arm_b, omega_b,
+                                          geo::C_n_e(geo::geodetic_from_ecef(nav.r_eb_e))};
+    Eigen::MatrixXd D = Eigen::MatrixXd::Zero(3, hypotheses.size());
+    hypotheses.add_measurement_errors({estimate::UpdateKind::kGnssPosition,
+                                       static_cast<std::size_t>(sample - mission.mission().imu.samples.begin()), nav, context},
+                                      D);
+    const Eigen::Vector3d v = (antenna(fix.t + kHalf) - antenna(fix.t - kHalf)) / (2.0 * kHalf);
+    farthest = std::max(farthest, (D.col(offset - hypotheses.all().begin()) + v).norm());
+    largest_shake = std::max(largest_shake, (nav.v_eb_e + nav.q_b_e * omega_b.cross(input.setup.lever_arm_b) - v).norm());
+  }
+  EXPECT_GT(largest_shake, 0.4);
+  // Of 14.7 Hz a mean over four samples of 50 Hz has sin(4 x)/(4 sin x) left, x = pi 14.7/50: 0.16 of 0.57 m/s.
+  EXPECT_LT(farthest, 0.13);
 }
 
 // Of a jump of fixes every instant between two of them is as good. In the middle it stays between them when tags shift a

@@ -36,8 +36,8 @@ struct Signals {
 
 /// What there is to see at a GNSS position or velocity.
 struct FixSignals {
-  /// Velocity of the antenna, its turning about the IMU over a tenth of a second, m/s. What a vehicle shakes is not what a shift
-  /// of the time by tens of milliseconds moves: at the instant itself it may be half of a slow vehicle's speed.
+  /// Velocity of the antenna, its turning about the IMU over a tenth of a second, m/s. What a vehicle shakes is not what a
+  /// shift of the time by tens of milliseconds moves: at the instant itself it may be half of a slow vehicle's speed.
   Eigen::Vector3d v_ea_e;
   Eigen::Vector3d a_ea_e;   ///< its acceleration, that of the IMU's point over a tenth of a second, m/s^2
   Eigen::Vector3d omega_b;  ///< rate against the Earth, rad/s
