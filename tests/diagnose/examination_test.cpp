@@ -131,12 +131,13 @@ TEST(Hypotheses, AShiftOfTheTimeMovesAFixAsTheAntennaGoesAndNotAsItShakes) {
   constexpr double kRate = 0.5;        // rad/s
   constexpr double kFrequency = 14.7;  // Hz
   constexpr double kHalf = 0.05;       // s
-  auto [input, truth] = test::honest_mission_with_truth(18, 220.0);
+  test::MissionWithTruth made = test::honest_mission_with_truth(18, 220.0);
+  MissionInput& input = made.input;
   const geo::GpsTime start = input.imu.samples.front().t;
   for (record::ImuSample& sample : input.imu.samples)
     sample.dtheta.x() += kRate * sample.dt * std::sin(2.0 * geo::kPi * kFrequency * (sample.t - start));
   const study::PreparedMission mission(input.imu, input.gnss, input.setup, {});
-  const std::vector<record::NavState>& path = truth.states;
+  const std::vector<record::NavState>& path = made.truth.states;
   const Hypotheses hypotheses(mission.mission(), mission.options(), Grade::kIndustrial, path, {});
   const auto offset =
       std::ranges::find_if(hypotheses.all(), [](const Hypothesis& h) { return h.effect->name == "gnss_time_offset"; });
