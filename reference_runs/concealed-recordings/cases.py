@@ -31,7 +31,7 @@ def rover(run, lever_arm, offset):
 
 RECORDINGS = {"car": CAR, "rover-h": rover("h", (-0.125, -0.136, -0.112), 0.203), "rover-k": rover("k", (-0.124, -0.129, -0.118), 0.063)}
 STRENGTHS = (1.0, 2.0, 4.0, 10.0)
-PLAUSIBLE = {"gyro_scale_factor": 0.1, "accel_scale_factor": 0.1}
+PLAUSIBLE = {"gyro_scale_factor": 0.1, "accel_scale_factor": 0.1, "gyro_g_sensitivity": 0.02}
 PROBES = {"gnss_time_offset": 0.02}  # where it is plausible: over a millisecond what the vehicle shakes outweighs its speed
 CONCEALED = [("gyro_scale_factor", "gyro"), ("accel_scale_factor", "accel"), ("gyro_g_sensitivity", "gyro"), ("gnss_time_offset", "clock"),
              ("saturation", "gyro"), ("bias_step", "gyro"), ("bias_step", "accel")]
