@@ -124,13 +124,18 @@ void Search::run_from(const MissionRun& last) {
   const estimate::SmoothedKnot& start = last.solution().smoothed.front();
   loosen_start(last.prepared(), start, current_);
   if (!sensors_at_start_) sensors_at_start_ = SensorsAtStart{last.layout(), start.x};
-  if (sensors_are_elsewhere(last)) {
-    current_.setup.start_sensor_errors.resize(0);  // about the prior mean
-    run_current();
-    sensors_at_start_ = SensorsAtStart{run_->layout(), run_->solution().smoothed.front().x};
-  }
+  if (sensors_are_elsewhere(last)) find_sensors_anew();
   current_.setup.start_sensor_errors = sensor_states_in(layout_of(current_), sensors_at_start_->layout, sensors_at_start_->x);
   run_current();
+}
+
+void Search::find_sensors_anew() {
+  current_.setup.start_sensor_errors.resize(0);
+  try {
+    run_current();
+    sensors_at_start_ = SensorsAtStart{run_->layout(), run_->solution().smoothed.front().x};
+  } catch (const NumericalError&) {  // so far from them the filter may break down: they stay
+  }
 }
 
 bool Search::sensors_are_elsewhere(const MissionRun& last) const {

@@ -109,6 +109,8 @@ class Search {
   void run_current();
   /// Whether a run found errors of the sensors far from those about which it was linearised.
   [[nodiscard]] bool sensors_are_elsewhere(const MissionRun& last) const;
+  /// By a run about their prior mean.
+  void find_sensors_anew();
   void model_noise(MissionInput& input) const;
 
   // Random effects, converters, and noise that is stated (search_noise.cpp).
