@@ -83,6 +83,33 @@ void search_to_the_end(Searched& searched) {
   }
 }
 
+/// Two explanations of the mission: the likelier one stays, and is told of the other. @return  whether it is the other
+bool keep_likelier(Searched& best, Searched other) {
+  const double log_odds = best.search->evidence() - other.search->evidence();
+  if (log_odds < 0.0) std::swap(best, other);
+  best.search->tell_of(*other.search, std::abs(log_odds));
+  return log_odds < 0.0;
+}
+
+/// Effects that begin at some time, as such that are there from the start on. @return  runs that led to nothing
+std::size_t try_lasting(Searched& best) {
+  std::size_t in_vain = 0;
+  for (std::size_t i = 0; i < best.search->taken().size();) {
+    const std::size_t before = best.search->runs();
+    Searched other{std::make_unique<Search>(*best.search), best.rejected};
+    const bool is_possible = other.search->put_lasting_in_place_of(i);
+    if (is_possible) search_to_the_end(other);
+    const std::size_t runs = other.search->runs() - before;
+    if (is_possible && keep_likelier(best, std::move(other))) {
+      i = 0;
+      continue;
+    }
+    in_vain += runs;
+    ++i;
+  }
+  return in_vain;
+}
+
 /// The figures of many recordings, on all threads.
 std::vector<std::vector<Statistic>> figures_of(std::size_t count, const std::function<MissionInput(std::size_t)>& recording,
                                                std::uint64_t seed, const study::Progress& progress) {
@@ -123,10 +150,11 @@ Diagnosis diagnose(const MissionInput& input, const DiagnosisOptions& options, c
   if (best.search->has_taken_noise()) {
     Searched other = begin(Order::kMeansFirst);
     search_to_the_end(other);
-    if (other.search->evidence() > best.search->evidence()) std::swap(best, other);
-    best.search->tell_of(*other.search, best.search->evidence() - other.search->evidence());
-    further_runs = other.search->runs();
+    further_runs = best.search->runs() + other.search->runs();
+    keep_likelier(best, std::move(other));
+    further_runs -= best.search->runs();
   }
+  further_runs += try_lasting(best);
   if (twins > 0 && best.search->has_found_anything()) after = compared(*best.search, {});
   std::optional<ReferenceOffset> offset;
   if (options.reference) offset = offset_from(*options.reference, best.search->run().path());

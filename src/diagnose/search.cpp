@@ -114,7 +114,7 @@ void Search::run_again() {
     run_current();
     return;
   }
-  const std::unique_ptr<MissionRun> last = std::move(run_);
+  const RunPtr last = std::move(run_);
   run_from(*last);
 }
 
@@ -160,7 +160,7 @@ double Search::likelihood_from(const MissionRun& last) {
 bool Search::run_moved(const std::vector<Taken>& before) {
   constexpr int kHalvings = 3;
   constexpr double kLess = 3.0;  // that a run may be for the other point about which it is linearised
-  const std::unique_ptr<MissionRun> start = std::move(run_);
+  const RunPtr start = std::move(run_);
   for (int i = 0; i <= kHalvings; ++i) {
     if (likelihood_from(*start) > start->log_likelihood() - kLess) return true;
     for (std::size_t k = 0; k < taken_.size(); ++k) taken_[k].value = 0.5 * (taken_[k].value + before[k].value);
@@ -205,6 +205,15 @@ void Search::give_up(std::size_t index) {
   noise_is_behind_ = true;
 }
 
+void Search::take_out(std::size_t index) {
+  taken_.erase(taken_.begin() + static_cast<std::ptrdiff_t>(index));
+  result_.findings.erase(result_.findings.begin() + static_cast<std::ptrdiff_t>(index));
+  run_again();
+  const LargestByChance chance = suspicions_.chance;
+  suspicions_ = suspicions(examined({}, 0), run_->hypotheses(), rows_of(taken_, run_->hypotheses().size()));
+  suspicions_.judge(chance);
+}
+
 void Search::forget_what_vanished() {
   for (std::size_t i = taken_.size(); i-- > 0;) {
     // Sine and cosine of an oscillation belong together.
@@ -222,7 +231,7 @@ void Search::model_noise(MissionInput& input) const {
 }
 
 void Search::run_current() {
-  run_ = std::make_unique<MissionRun>(current_, grade_, suggested_, progress_);
+  run_ = std::make_shared<const MissionRun>(current_, grade_, suggested_, progress_);
   ++result_.runs;
 }
 

@@ -48,7 +48,7 @@ struct Mark {
 /// itself; mean effects by the dozen stand for noise that lasts. Which it is shows in the end (Search::evidence).
 enum class Order { kNoiseFirst, kMeansFirst };
 
-/// The mission with what has been taken so far, and the search's next step.
+/// The mission with what has been taken so far, and the search's next step. A copy is another search that goes on from there.
 class Search {
  public:
   Search(const MissionInput& input, const DiagnosisOptions& options, Order order, const study::Progress& progress);
@@ -84,6 +84,11 @@ class Search {
   [[nodiscard]] Examination examined(const std::function<bool(geo::GpsTime)>& counts = {}, Eigen::Index draws = 400) const;
   /// Takes an effect back, and runs again.
   void give_up(std::size_t index);
+  /// What was there from the start on is explained by an effect that begins later wherever the first fixes on the move
+  /// contradict it for a reason of their own, and no single exchange leads from one to the other: that reason has to be found
+  /// too. Takes it in its place, likelier or not, with room for one effect more, and never the other again.
+  /// @return  whether there is such an effect, and the filter gets through with it
+  bool put_lasting_in_place_of(std::size_t index);
   /// Every effect of the catalogue is put to the test once more beside all the others: is it needed, and is it this one?
   /// @return  whether another took its place, or none
   bool review();
@@ -97,6 +102,8 @@ class Search {
   void add_draws(Examination& examination);
   [[nodiscard]] std::size_t most() const { return static_cast<std::size_t>(options_.most_effects); }
   void run_again();
+  /// What a run without one of what was taken shows.
+  void take_out(std::size_t index);
   /// @param last  a run whose trajectory the effects are taken out along
   void run_from(const MissionRun& last);
   /// Lets what was taken move until it stays where it is.
@@ -203,6 +210,8 @@ class Search {
   void join_quadratures();
   void describe_what_was_not_found();
 
+  using RunPtr = std::shared_ptr<const MissionRun>;
+
   DiagnosisOptions options_;
   Order order_;
   const study::Progress& progress_;
@@ -219,7 +228,7 @@ class Search {
     Eigen::VectorXd x;
   };
   std::optional<SensorsAtStart> sensors_at_start_;
-  std::unique_ptr<MissionRun> run_;
+  RunPtr run_;
   std::vector<Taken> taken_;
   std::vector<Eigen::Index> refused_;   ///< until another is taken
   std::vector<Eigen::Index> given_up_;  ///< for good

@@ -48,12 +48,12 @@ void Search::run_without(Candidate& candidate) {
   const double choice = log_choices();
   const std::vector<Taken> taken = taken_;
   const MissionInput input = current_;
-  std::unique_ptr<MissionRun> start = std::move(run_);
+  RunPtr start = std::move(run_);
   taken_.push_back({s.hypothesis, s.from, {}, s.estimate});
   double best = likelihood_from(*start);
   if (run_ != nullptr) {
     const Movement moved = move_all(examined({}, 0));
-    const std::unique_ptr<MissionRun> first = std::move(run_);
+    const RunPtr first = std::move(run_);
     for (std::size_t i = 0; i < taken.size(); ++i)
       if (std::abs(taken_[i].value) < kNothing * moved.sd(static_cast<Eigen::Index>(i)))
         candidate.freed += result_.findings[i].price + choice;
@@ -88,7 +88,7 @@ bool Search::makes_likelier(const Suspicion& s) {
   const double before = run_->log_likelihood();
   const std::vector<Taken> others = taken_;
   take(s);
-  const std::unique_ptr<MissionRun> start = std::move(run_);
+  const RunPtr start = std::move(run_);
   const auto gains_enough = [&](const MissionRun& last) {
     result_.findings.back().delta_log_likelihood = likelihood_from(last) - before;
     return result_.findings.back().delta_log_likelihood >= 0.5 * result_.threshold;
@@ -98,7 +98,7 @@ bool Search::makes_likelier(const Suspicion& s) {
     bool is_taken = gains_enough(*start);
     if (!is_taken && run_ != nullptr) {
       move_all(examined({}, 0));
-      const std::unique_ptr<MissionRun> first = std::move(run_);
+      const RunPtr first = std::move(run_);
       is_taken = gains_enough(*first);
     }
     if (is_taken) {
@@ -170,12 +170,7 @@ bool Search::last_is_confirmed() {
   const bool has_name = !is_suggested(*finding.hypothesis.effect);
   if (!has_name && finding.hypothesis.effect->relation.empty()) return true;  // nothing that has a name looks like a line
   const double with_it = run_->log_likelihood();
-  taken_.pop_back();
-  result_.findings.pop_back();
-  run_again();
-  const LargestByChance chance = suspicions_.chance;
-  suspicions_ = suspicions(examined({}, 0), run_->hypotheses(), rows_of(taken_, run_->hypotheses().size()));
-  suspicions_.judge(chance);
+  take_out(taken_.size() - 1);
   if (!has_name) refused_.push_back(one.hypothesis);  // among those that have one
   candidates_ = candidates();
   const double gain = with_it - run_->log_likelihood();
@@ -191,6 +186,28 @@ bool Search::last_is_confirmed() {
     }
   }
   return makes_likelier(best) && best.hypothesis == one.hypothesis;
+}
+
+bool Search::put_lasting_in_place_of(std::size_t index) {
+  const Taken one = taken_[index];
+  const Hypothesis begins = run_->hypotheses()[one.hypothesis];
+  if (begins.effect->lasting.empty()) return false;
+  take_out(index);
+  candidates_ = {};
+  given_up_.push_back(one.hypothesis);
+  ++options_.most_effects;
+  noise_is_behind_ = true;
+  const auto lasting = std::ranges::find_if(suspicions_.all, [&](const Suspicion& s) {
+    const Hypothesis& h = run_->hypotheses()[s.hypothesis];
+    return h.effect->name == begins.effect->lasting && h.axis_name() == begins.axis_name();
+  });
+  if (lasting == suspicions_.all.end() || was_refused(*lasting)) return false;
+  Suspicion from_the_start = *lasting;
+  from_the_start.estimate = one.value;
+  take(from_the_start);
+  const RunPtr without_either = std::move(run_);
+  result_.findings.back().delta_log_likelihood = likelihood_from(*without_either) - without_either->log_likelihood();
+  return run_ != nullptr;
 }
 
 std::optional<double> log_odds_told(double by_data, double by_evidence) {

@@ -41,7 +41,7 @@ EffectPtr Search::refined(const EffectPtr& line) {
     lines.push_back(harmonic_disturbance(line->site, line->axes.front().front() - 'x', line->fixed[0].value + i * kStep / span,
                                          line->fixed[1].value));
   suggested_.insert(suggested_.end(), lines.begin(), lines.end());
-  const std::unique_ptr<MissionRun> start = std::move(run_);
+  const RunPtr start = std::move(run_);
   run_from(*start);
   const Examination e = examined({}, 0);
   const auto first = static_cast<Eigen::Index>(run_->hypotheses().size()) - 2 * static_cast<Eigen::Index>(lines.size());
@@ -65,7 +65,7 @@ void Search::try_out(const Proposal& form) {
   const std::vector<Taken> taken = taken_;
   const std::vector<Finding> findings = result_.findings;
   suggested_.push_back(form.effect->relation.empty() ? refined(form.effect) : form.effect);
-  const std::unique_ptr<MissionRun> start = std::move(run_);
+  const RunPtr start = std::move(run_);
   run_from(*start);
   const auto first = static_cast<Eigen::Index>(run_->hypotheses().size()) - static_cast<Eigen::Index>(form.effect->axes.size());
   for (Eigen::Index i = first; i < run_->hypotheses().size(); ++i)
@@ -75,7 +75,7 @@ void Search::try_out(const Proposal& form) {
           .log_bayes = 0.5 * form.likelihood_ratio - form.log_places,
           .p_value = form.p_value});
   static_cast<void>(follow(examined({}, 0)));
-  const std::unique_ptr<MissionRun> without_it = std::move(run_);
+  const RunPtr without_it = std::move(run_);
   const double gained = likelihood_from(*without_it) - before;
   if (gained - form.log_places > std::max(candidates_.gain, -std::log(kFormFalseAlarm))) {
     refused_.clear();

@@ -72,6 +72,27 @@ TEST(Diagnosis, AWrongLeverArmIsNotASlipBehindAWrongFix) {
   for (const Finding& f : d.findings) EXPECT_NE(f.hypothesis.effect->name, "antenna_mount_slip") << names(d);
 }
 
+// The first four seconds on the move the receiver is wrong by decimetres. They contradict the offset that is there all the
+// time, and a gap of the tags where they end explains both.
+TEST(Diagnosis, ATimeOffsetIsNotAGapWhereWrongFixesEnd) {
+  test::MissionWithTruth mission = test::honest_mission_with_truth(21);
+  MissionInput& input = mission.input;
+  constexpr double kOffset = 0.05;
+  input.setup.time_offset_s = kOffset;
+  const auto moves =
+      std::ranges::find_if(mission.truth.states, [](const record::NavState& s) { return s.v_eb_e.norm() > 0.5; });
+  ASSERT_NE(moves, mission.truth.states.end());
+  for (record::GnssFix& fix : input.gnss.fixes)
+    if (fix.t >= moves->t && fix.t < moves->t + 4.0)
+      fix.r_ea_e += geo::C_n_e(geo::geodetic_from_ecef(fix.r_ea_e)) * Eigen::Vector3d(0.12, -0.08, 0.0);
+  const Diagnosis d = diagnose::diagnose(input, kWithoutTwins, {});
+  const auto offset =
+      std::ranges::find(d.findings, "gnss_time_offset", [](const Finding& f) { return f.hypothesis.effect->name; });
+  ASSERT_NE(offset, d.findings.end()) << names(d);
+  EXPECT_NEAR(offset->value, -kOffset, 4.0 * offset->sd);
+  for (const Finding& f : d.findings) EXPECT_NE(f.hypothesis.effect->name, "imu_timestamp_gap") << names(d);
+}
+
 // By hand: differences 3, 1, 2: mean 2, sd of the mean 1 / sqrt(3).
 TEST(Drift, IsFartherWhereItIsByHalfAndNotByChance) {
   const auto fit = [](const std::vector<double>& outages) {

@@ -78,6 +78,7 @@ struct Effect {
   std::string_view name{};
   Site site = Site::kImu;
   Begins begins = Begins::kWithTheMission;
+  std::string_view lasting{};    ///< of one that begins at some time: the effect that is the same from the start on
   std::string_view parameter{};  ///< what the coefficient is called
   std::string_view unit{};
   std::string_view equation{};

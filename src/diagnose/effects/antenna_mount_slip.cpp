@@ -7,6 +7,7 @@ Effect antenna_mount_slip() {
       .name = "antenna_mount_slip",
       .site = Site::kAntenna,
       .begins = Effect::Begins::kAtSomeTime,
+      .lasting = "lever_arm_error",
       .parameter = "distance",
       .unit = "m",
       .equation = "r_a = r_b + C_b_e (l + dl)",

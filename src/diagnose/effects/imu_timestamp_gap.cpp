@@ -7,6 +7,7 @@ Effect imu_timestamp_gap() {
       .name = "imu_timestamp_gap",
       .site = Site::kClock,
       .begins = Effect::Begins::kAtSomeTime,
+      .lasting = "gnss_time_offset",
       .parameter = "offset",
       .unit = "s",
       .equation = "from t0 on a fix tagged t is valid at t - d",
