@@ -197,16 +197,24 @@ bool Search::put_lasting_in_place_of(std::size_t index) {
   given_up_.push_back(one.hypothesis);
   ++options_.most_effects;
   noise_is_behind_ = true;
-  const auto lasting = std::ranges::find_if(suspicions_.all, [&](const Suspicion& s) {
-    const Hypothesis& h = run_->hypotheses()[s.hypothesis];
+  const auto is_lasting = [&](Eigen::Index hypothesis) {
+    const Hypothesis& h = run_->hypotheses()[hypothesis];
     return h.effect->name == begins.effect->lasting && h.axis_name() == begins.axis_name();
-  });
-  if (lasting == suspicions_.all.end() || was_refused(*lasting)) return false;
-  Suspicion from_the_start = *lasting;
-  from_the_start.estimate = one.value;
-  take(from_the_start);
-  const RunPtr without_either = std::move(run_);
-  result_.findings.back().delta_log_likelihood = likelihood_from(*without_either) - without_either->log_likelihood();
+  };
+  const auto share = std::ranges::find_if(taken_, is_lasting, &Taken::hypothesis);
+  const bool is_taken = share != taken_.end();
+  if (is_taken) {
+    share->value += one.value;
+  } else {
+    const auto lasting = std::ranges::find_if(suspicions_.all, is_lasting, &Suspicion::hypothesis);
+    if (lasting == suspicions_.all.end() || was_refused(*lasting)) return false;
+    Suspicion from_the_start = *lasting;
+    from_the_start.estimate = one.value;
+    take(from_the_start);
+  }
+  const RunPtr without_it = std::move(run_);
+  const double gained = likelihood_from(*without_it) - without_it->log_likelihood();
+  if (!is_taken) result_.findings.back().delta_log_likelihood = gained;
   return run_ != nullptr;
 }
 
