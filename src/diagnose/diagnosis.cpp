@@ -95,17 +95,17 @@ bool keep_likelier(Searched& best, Searched other) {
 std::size_t try_lasting(Searched& best) {
   std::size_t in_vain = 0;
   for (std::size_t i = 0; i < best.search->taken().size();) {
-    const std::size_t before = best.search->runs();
+    if (!best.search->may_have_lasted(i)) {
+      ++i;
+      continue;
+    }
     Searched other{std::make_unique<Search>(*best.search), best.rejected};
     const bool is_possible = other.search->put_lasting_in_place_of(i);
     if (is_possible) search_to_the_end(other);
-    const std::size_t runs = other.search->runs() - before;
-    if (is_possible && keep_likelier(best, std::move(other))) {
-      i = 0;
-      continue;
-    }
-    in_vain += runs;
-    ++i;
+    const std::size_t runs = other.search->runs() - best.search->runs();
+    const bool is_likelier = is_possible && keep_likelier(best, std::move(other));
+    if (!is_likelier) in_vain += runs;
+    i = is_likelier ? 0 : i + 1;
   }
   return in_vain;
 }

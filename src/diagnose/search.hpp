@@ -84,11 +84,12 @@ class Search {
   [[nodiscard]] Examination examined(const std::function<bool(geo::GpsTime)>& counts = {}, Eigen::Index draws = 400) const;
   /// Takes an effect back, and runs again.
   void give_up(std::size_t index);
+  /// Whether an effect that begins at some time has one that is the same from the start on.
+  [[nodiscard]] bool may_have_lasted(std::size_t index) const;
   /// What was there from the start on is explained by an effect that begins later wherever the first fixes on the move
   /// contradict it for a reason of their own, and no single exchange leads from one to the other: that reason has to be found
   /// too. Takes it (all of it, where a share was taken) in its place, likelier or not, with room for one effect more, and never
-  /// the other again.
-  /// @return  whether there is such an effect, and the filter gets through with it
+  /// the other again. @return  whether the recording can show it, and the filter gets through with it
   bool put_lasting_in_place_of(std::size_t index);
   /// Every effect of the catalogue is put to the test once more beside all the others: is it needed, and is it this one?
   /// @return  whether another took its place, or none

@@ -188,10 +188,13 @@ bool Search::last_is_confirmed() {
   return makes_likelier(best) && best.hypothesis == one.hypothesis;
 }
 
+bool Search::may_have_lasted(std::size_t index) const {
+  return !run_->hypotheses()[taken_[index].hypothesis].effect->lasting.empty();
+}
+
 bool Search::put_lasting_in_place_of(std::size_t index) {
   const Taken one = taken_[index];
   const Hypothesis begins = run_->hypotheses()[one.hypothesis];
-  if (begins.effect->lasting.empty()) return false;
   take_out(index);
   candidates_ = {};
   given_up_.push_back(one.hypothesis);
