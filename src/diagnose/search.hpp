@@ -232,8 +232,9 @@ class Search {
   std::optional<SensorsAtStart> sensors_at_start_;
   RunPtr run_;
   std::vector<Taken> taken_;
-  std::vector<Eigen::Index> refused_;   ///< until another is taken
-  std::vector<Eigen::Index> given_up_;  ///< for good
+  std::vector<Eigen::Index> refused_;    ///< until another is taken
+  std::vector<Eigen::Index> given_up_;   ///< for good
+  std::vector<Eigen::Index> exchanged_;  ///< for good; what they are in another search is told by evidence
   std::optional<Examination> drawn_;
   Suspicions suspicions_;
   Candidates candidates_;  ///< that this step chooses among

@@ -18,8 +18,8 @@ constexpr std::size_t kMostByRuns = 3;
 }  // namespace
 
 bool Search::was_refused(const Suspicion& s) const {
-  return std::ranges::find(refused_, s.hypothesis) != refused_.end() ||
-         std::ranges::find(given_up_, s.hypothesis) != given_up_.end();
+  const auto has = [&s](const std::vector<Eigen::Index>& all) { return std::ranges::find(all, s.hypothesis) != all.end(); };
+  return has(refused_) || has(given_up_) || has(exchanged_);
 }
 
 Candidates Search::candidates() const {
@@ -197,7 +197,7 @@ bool Search::put_lasting_in_place_of(std::size_t index) {
   const Hypothesis begins = run_->hypotheses()[one.hypothesis];
   take_out(index);
   candidates_ = {};
-  given_up_.push_back(one.hypothesis);
+  exchanged_.push_back(one.hypothesis);
   ++options_.most_effects;
   noise_is_behind_ = true;
   const auto is_lasting = [&](Eigen::Index hypothesis) {
@@ -251,7 +251,7 @@ void Search::take(const Suspicion& s) {
                   .alternatives = {},
                   .stability = {}};
   const auto tell = [&](const Suspicion& other) {
-    if (other.hypothesis == s.hypothesis) return;
+    if (other.hypothesis == s.hypothesis || std::ranges::find(exchanged_, other.hypothesis) != exchanged_.end()) return;
     const double by_data = gained_by_runs(s) && gained_by_runs(other) ? *gained_by_runs(s) - *gained_by_runs(other)
                                                                       : 0.5 * (s.likelihood_ratio - other.likelihood_ratio);
     if (const auto odds = log_odds_told(by_data, by_data + other.price() - s.price()))
