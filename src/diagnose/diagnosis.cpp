@@ -91,8 +91,19 @@ bool keep_likelier(Searched& best, Searched other) {
   return log_odds < 0.0;
 }
 
+/// Goes on with an effect that is there from the start on in place of one that begins. @return  whether it came to an end
+bool try_lasting(Searched& other, std::size_t index) {
+  try {
+    if (!other.search->put_lasting_in_place_of(index)) return false;
+    search_to_the_end(other);
+    return true;
+  } catch (const NumericalError&) {  // a large one that was not there at first may break the filter at any step
+    return false;
+  }
+}
+
 /// Effects that begin at some time, as such that are there from the start on. @return  runs that led to nothing
-std::size_t try_lasting(Searched& best) {
+std::size_t try_all_lasting(Searched& best) {
   std::size_t in_vain = 0;
   for (std::size_t i = 0; i < best.search->taken().size();) {
     if (!best.search->may_have_lasted(i)) {
@@ -100,8 +111,7 @@ std::size_t try_lasting(Searched& best) {
       continue;
     }
     Searched other{std::make_unique<Search>(*best.search), best.rejected};
-    const bool is_possible = other.search->put_lasting_in_place_of(i);
-    if (is_possible) search_to_the_end(other);
+    const bool is_possible = try_lasting(other, i);
     const std::size_t runs = other.search->runs() - best.search->runs();
     const bool is_likelier = is_possible && keep_likelier(best, std::move(other));
     if (!is_likelier) in_vain += runs;
@@ -154,7 +164,7 @@ Diagnosis diagnose(const MissionInput& input, const DiagnosisOptions& options, c
     keep_likelier(best, std::move(other));
     further_runs -= best.search->runs();
   }
-  further_runs += try_lasting(best);
+  further_runs += try_all_lasting(best);
   if (twins > 0 && best.search->has_found_anything()) after = compared(*best.search, {});
   std::optional<ReferenceOffset> offset;
   if (options.reference) offset = offset_from(*options.reference, best.search->run().path());
