@@ -1,19 +1,16 @@
-"""cases.py COAST OUT [--shard I N]: effects in the IMU data of real recordings, and configurations falsified, by chance; key and
-diagnosis of every case are kept. What is there already is not made again, so an interrupted run goes on; shards share the cases out."""
+"""cases.py COAST OUT [--shard I N] [--conceal-only]: effects in the IMU data of real recordings, and configurations falsified, by chance; key
+and diagnosis of every case are kept. What is there already is not made again, so an interrupted run goes on; shards share the cases out."""
 
-import argparse
 import functools
 import json
 import math
 import os
 import random
-import shutil
-import subprocess
 import sys
 
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), "../../tools/lib"))
 
-from concealment import configured, effects, recorded, sizes  # noqa: E402
+from concealment import configured, effects, recorded, sizes, study  # noqa: E402
 
 DATA = os.environ["COAST_DATA"]
 # What the recordings show of antenna and clock, as they are (missing-physics-recordings), is told; nothing of it is estimated on the way.
@@ -116,34 +113,4 @@ def make(case, folder):
         json.dump({"recording": recording_of(case), "effect": key}, file)
 
 
-def diagnose(coast, folder, kept):
-    subprocess.run([coast, "diagnose", f"{folder}/run.yaml", "--out", f"{folder}/diagnosis", "--twins", "0", "--threads", "1", "--quiet"], check=True,
-                   stderr=subprocess.DEVNULL)
-    with open(f"{folder}/key.json") as key, open(f"{folder}/diagnosis/diagnosis.json") as diagnosis:
-        case = {"key": json.load(key), "diagnosis": json.load(diagnosis)}
-    with open(kept + ".part", "w") as file:
-        json.dump(case, file)
-    os.rename(kept + ".part", kept)
-    shutil.rmtree(folder)
-
-
-def main():
-    parser = argparse.ArgumentParser()
-    parser.add_argument("coast")
-    parser.add_argument("out")
-    parser.add_argument("--shard", type=int, nargs=2, default=(0, 1))
-    args = parser.parse_args()
-    os.environ["COAST"] = args.coast
-    os.makedirs(args.out, exist_ok=True)
-    for i, case in enumerate(CASES):
-        folder, kept = f"{args.out}/case-{case}", f"{args.out}/{case}.json"
-        if i % args.shard[1] != args.shard[0] or os.path.exists(kept):
-            continue
-        if not os.path.exists(f"{folder}/key.json"):
-            os.makedirs(folder, exist_ok=True)
-            make(case, folder)
-        diagnose(args.coast, folder, kept)
-        print(f"{case}: {i + 1} of {len(CASES)}", flush=True)
-
-
-main()
+study.work_through(CASES, make, "", study.arguments())

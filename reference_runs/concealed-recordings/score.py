@@ -1,11 +1,14 @@
 """score.py FOLDER: opens the keys and says how often what was found is what was concealed; JSON on standard output. What a recording shows
 as it is counts for nothing, where the same is found in the same size; of the effect that is concealed it adds to it."""
 
-import glob
 import json
 import math
 import os
 import sys
+
+sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), "../../tools/lib"))
+
+from concealment.study import kept_in, share  # noqa: E402
 
 OWN = math.sqrt(17.07)  # sigmas by which an effect of the recording's own has to differ to be another: the smallest detectable size (Baarda)
 AS_IS = {"car": 900, "rover-h": 901, "rover-k": 902}
@@ -44,11 +47,6 @@ def score(truth, effects, as_is):
     return s
 
 
-def share(values):
-    values = [v for v in values if v is not None]
-    return {"of": len(values), "share": sum(values) / len(values)} if values else {"of": 0, "share": None}
-
-
 def table(scored):
     hits = [s for s in scored if s["detected"]]
     return {"detected": share(s["detected"] for s in scored), "found": share(s["found"] for s in scored), "among": share(s["named"] for s in scored),
@@ -60,13 +58,10 @@ def table(scored):
 
 
 def main():
-    cases = {}
-    for path in glob.glob(f"{sys.argv[1]}/*.json"):
-        with open(path) as file:
-            cases[int(os.path.basename(path).split(".")[0])] = json.load(file)
+    cases = kept_in(sys.argv[1])
     as_is = {name: cases[number]["diagnosis"]["effects"] for name, number in AS_IS.items() if number in cases}
     scored = {}
-    for number, case in sorted(cases.items()):
+    for number, case in cases.items():
         truth = case["key"]["effect"]
         if truth:
             own = as_is[case["key"]["recording"]]

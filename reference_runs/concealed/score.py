@@ -1,10 +1,13 @@
 """score.py FOLDER: opens the keys of all cases and says how often what was found is what was concealed; JSON on standard output."""
 
-import glob
 import json
 import math
 import os
 import sys
+
+sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), "../../tools/lib"))
+
+from concealment.study import kept_in, share  # noqa: E402
 
 FALSE_ALARM = 0.05
 DETECTABLE = math.sqrt(17.07)  # sigmas of the smallest detectable size: alpha 0.1 %, power 80 % (Baarda)
@@ -72,11 +75,6 @@ def score(truth, effects):
     return s
 
 
-def share(values):
-    values = [v for v in values if v is not None]
-    return {"of": len(values), "share": sum(values) / len(values)} if values else {"of": 0, "share": None}
-
-
 def table(scored):
     hits = [s for s in scored if s["detected"]]
     onsets = [s for s in hits if s.get("onset_s") is not None]
@@ -106,10 +104,7 @@ def pair(case):
 
 
 def main():
-    cases = {}
-    for path in glob.glob(f"{sys.argv[1]}/*.json"):
-        with open(path) as file:
-            cases[int(os.path.basename(path).split(".")[0])] = json.load(file)
+    cases = kept_in(sys.argv[1])
     clean = [c for c in cases.values() if not c["key"]["effects"]]
     raised = sum(bool(c["diagnosis"]["effects"]) for c in clean)
     result = {"cases": len(cases), "clean": {"of": len(clean), "raised": raised, "share": raised / max(1, len(clean)),
@@ -117,14 +112,14 @@ def main():
                                              "nominal_and_two_standard_errors": 0.05 + 2.0 * math.sqrt(0.05 * 0.95 / max(1, len(clean)))}}
     groups = {"named": range(300), "noise": range(2000, 2100), "relations": range(2100, 2200)}
     for group, numbers in groups.items():
-        here = [c for k, c in sorted(cases.items()) if k in numbers and c["key"]["effects"]]
+        here = [c for k, c in cases.items() if k in numbers and c["key"]["effects"]]
         scored = [(c["key"]["strength"], score(c["key"]["effects"][0], c["diagnosis"]["effects"])) for c in here]
         result[group] = {"strengths": {f"{strength:g}": table([s for k, s in scored if k == strength])
                                        for strength in sorted({k for k, _ in scored})}, "effects": by_effect(scored)}
         result[group]["all"] = table([s for _, s in scored])
         if group == "named":
             result[group]["expected_at_1"] = expected([power(c) for c in here if c["key"]["strength"] == 1.0])
-    pairs = [pair(c) for k, c in sorted(cases.items()) if k >= 2200]
+    pairs = [pair(c) for k, c in cases.items() if k >= 2200]
     result["pairs"] = {key: share(p[key] for p in pairs) for key in ("both", "one", "nothing_else")}
     json.dump(result, sys.stdout, indent=1)
     print()
