@@ -72,12 +72,12 @@ void correct_fixes(const std::vector<Taken>& taken, const Hypotheses& hypotheses
     estimate::MeasurementView view{estimate::UpdateKind::kGnssPosition, static_cast<std::size_t>(sample - samples.begin()), nav,
                                    context};
     D.setZero();
-    hypotheses.add_measurement_errors(view, D);
+    hypotheses.add_fix_errors(view, D);
     fix.r_ea_e -= D * c;
     if (!fix.velocity) continue;
     view.kind = estimate::UpdateKind::kGnssVelocity;
     D.setZero();
-    hypotheses.add_measurement_errors(view, D);
+    hypotheses.add_fix_errors(view, D);
     fix.velocity->v_ea_n -= C_n_e.transpose() * (D * c);
   }
 }

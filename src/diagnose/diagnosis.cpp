@@ -79,8 +79,9 @@ void search_to_the_end(Searched& searched) {
     step_to_the_end(*searched.search);
     searched.search->forget_what_vanished();
     const bool spoilt = heed_outages(searched);
-    if (!hold_out(searched) && !spoilt) return;
+    if (!hold_out(searched) && !spoilt) break;
   }
+  searched.search->look_at_start();
 }
 
 /// Two explanations of the mission: the likelier one stays, and is told of the other. @return  whether it is the other
@@ -91,10 +92,12 @@ bool keep_likelier(Searched& best, Searched other) {
   return log_odds < 0.0;
 }
 
-/// Goes on with an effect that is there from the start on in place of one that begins. @return  whether it came to an end
-bool try_lasting(Searched& other, std::size_t index) {
+using Exchange = std::function<bool(Search&)>;
+
+/// Goes on from a copy with one thing in place of another. @return  whether it came to an end
+bool try_exchange(Searched& other, const Exchange& exchange) {
   try {
-    if (!other.search->put_lasting_in_place_of(index)) return false;
+    if (!exchange(*other.search)) return false;
     search_to_the_end(other);
     return true;
   } catch (const NumericalError&) {  // a large one that was not there at first may break the filter at any step
@@ -102,21 +105,31 @@ bool try_lasting(Searched& other, std::size_t index) {
   }
 }
 
+/// The likelier one stays. @return  whether it is the other  @param in_vain  of runs that led to nothing
+bool is_likelier_with(const Exchange& exchange, Searched& best, std::size_t& in_vain) {
+  Searched other{std::make_unique<Search>(*best.search), best.rejected};
+  const bool is_possible = try_exchange(other, exchange);
+  const std::size_t runs = other.search->runs() - best.search->runs();
+  const bool is_likelier = is_possible && keep_likelier(best, std::move(other));
+  if (!is_likelier) in_vain += runs;
+  return is_likelier;
+}
+
 /// Effects that begin at some time, as such that are there from the start on. @return  runs that led to nothing
 std::size_t try_all_lasting(Searched& best) {
   std::size_t in_vain = 0;
   for (std::size_t i = 0; i < best.search->taken().size();) {
-    if (!best.search->may_have_lasted(i)) {
-      ++i;
-      continue;
-    }
-    Searched other{std::make_unique<Search>(*best.search), best.rejected};
-    const bool is_possible = try_lasting(other, i);
-    const std::size_t runs = other.search->runs() - best.search->runs();
-    const bool is_likelier = is_possible && keep_likelier(best, std::move(other));
-    if (!is_likelier) in_vain += runs;
-    i = is_likelier ? 0 : i + 1;
+    const Exchange exchange = [i](Search& search) { return search.put_lasting_in_place_of(i); };
+    i = best.search->may_have_lasted(i) && is_likelier_with(exchange, best, in_vain) ? 0 : i + 1;
   }
+  return in_vain;
+}
+
+/// Biases that the error model does not have, as effects that are a constant during this mission. @return  as above
+std::size_t try_all_constant(Searched& best) {
+  std::size_t in_vain = 0;
+  for (std::size_t i = 0; i < best.search->turned_on();)
+    i = is_likelier_with([i](Search& search) { return search.put_constant_in_place_of_bias(i); }, best, in_vain) ? 0 : i + 1;
   return in_vain;
 }
 
@@ -165,6 +178,7 @@ Diagnosis diagnose(const MissionInput& input, const DiagnosisOptions& options, c
     further_runs -= best.search->runs();
   }
   further_runs += try_all_lasting(best);
+  further_runs += try_all_constant(best);
   if (twins > 0 && best.search->has_found_anything()) after = compared(*best.search, {});
   std::optional<ReferenceOffset> offset;
   if (options.reference) offset = offset_from(*options.reference, best.search->run().path());

@@ -24,11 +24,7 @@ class DisturbanceRecorder {
                       Disturbances& into)
       : rows_(1 + std::min(options.draws, options.draws_of_disturbances)), into_(into) {
     for (std::size_t axis = 0; axis < kAxes; ++axis) {
-      const Site site = axis < 3 ? Site::kGyro : Site::kAccel;
-      const auto step = std::ranges::find_if(hypotheses.all(), [&](const Hypothesis& h) {
-        return h.effect->name == "bias_step" && h.effect->site == site && h.axis == static_cast<Eigen::Index>(axis % 3);
-      });
-      step_[axis] = step - hypotheses.all().begin();
+      step_[axis] = hypotheses.bias_step(axis < 3 ? Site::kGyro : Site::kAccel, static_cast<Eigen::Index>(axis % 3));
       into_.score[axis].resize(rows_, static_cast<Eigen::Index>(intervals));
       behind_[axis] = Eigen::VectorXd::Zero(rows_);
     }
@@ -255,7 +251,16 @@ double LargestByChance::quantile(double probability) const {
 
 void Suspicions::judge(const LargestByChance& by_chance) {
   chance = by_chance;
-  for (Suspicion& s : all) s.p_value = chance.p_value(s.likelihood_ratio);
+  for (std::vector<Suspicion>* some : {&all, &implausible})
+    for (Suspicion& s : *some) s.p_value = chance.p_value(s.likelihood_ratio);
+}
+
+const Suspicion* Suspicions::of(Eigen::Index hypothesis) const {
+  for (const std::vector<Suspicion>* some : {&all, &implausible}) {
+    const auto at = std::ranges::find(*some, hypothesis, &Suspicion::hypothesis);
+    if (at != some->end()) return &*at;
+  }
+  return nullptr;
 }
 
 Suspicions suspicions(const Examination& examination, const Hypotheses& hypotheses, const std::vector<Eigen::Index>& taken) {

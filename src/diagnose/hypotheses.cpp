@@ -6,6 +6,7 @@
 #include <numeric>
 
 #include "coast/geo/earth.hpp"
+#include "coast/geo/rotation.hpp"
 #include "coast/study/interpolation.hpp"
 
 namespace coast::diagnose {
@@ -124,6 +125,12 @@ Hypotheses::Hypotheses(const estimate::Mission& mission, const estimate::FilterO
   for (const EffectPtr& effect : suggested) add(*effect);
 }
 
+Eigen::Index Hypotheses::bias_step(Site site, Eigen::Index axis) const {
+  const auto at = std::ranges::find_if(
+      all_, [&](const Hypothesis& h) { return h.effect->name == "bias_step" && h.effect->site == site && h.axis == axis; });
+  return at - all_.begin();
+}
+
 const char* Hypotheses::why_not_seen(const Effect& effect) const {
   if (effect.needs_reference) return "no innovation changes: only a reference could show it";
   if (effect.needs_temperature && !signals_.has_temperature()) return "no temperature was recorded";
@@ -157,6 +164,9 @@ record::NavState Hypotheses::smoothed(const record::NavState& filtered) const {
 
 void Hypotheses::add_measurement_errors(const estimate::MeasurementView& m, Eigen::MatrixXd& D) const {
   if (m.kind == estimate::UpdateKind::kGnssPosition || m.kind == estimate::UpdateKind::kGnssVelocity) add_fix_errors(m, D);
+  // z - v - C (omega x l): what the rate has too much the antenna seems to have too little.
+  if (m.kind == estimate::UpdateKind::kGnssVelocity)
+    D += m.nav.q_b_e.toRotationMatrix() * geo::skew(m.context.lever_arm_b) * rate_errors(m, D.cols());
   if (m.kind == estimate::UpdateKind::kNonHolonomic) add_slip(m, D);
 }
 
@@ -167,7 +177,16 @@ void Hypotheses::add_slip(const estimate::MeasurementView& m, Eigen::MatrixXd& D
   Eigen::Matrix2Xd columns = Eigen::Matrix2Xd::Zero(2, D.cols());
   for (const Part& part : parts_)
     if (part.effect->slip) part.effect->slip(s, columns.middleCols(part.first, part.count));
-  D = columns;
+  const Eigen::Matrix3Xd slip_b = geo::skew(constraint.point_b) * rate_errors(m, D.cols());
+  D = columns + (estimate::C_b_v_of(constraint.pitch, constraint.yaw) * slip_b).bottomRows<2>();
+}
+
+Eigen::Matrix3Xd Hypotheses::rate_errors(const estimate::MeasurementView& m, Eigen::Index columns) const {
+  Eigen::Matrix3Xd gyro_b = Eigen::Matrix3Xd::Zero(3, columns);
+  Eigen::Matrix3Xd accel_b = gyro_b;
+  const Eigen::Vector3d earth_b = m.nav.q_b_e.conjugate() * Eigen::Vector3d(0.0, 0.0, mission_.earth_rate);
+  add_sensor_errors({m.sample, m.context.omega_eb_b + earth_b, signals_.means_about(m.sample).f_b, m.nav}, gyro_b, accel_b);
+  return gyro_b;
 }
 
 void Hypotheses::add_fix_errors(const estimate::MeasurementView& m, Eigen::MatrixXd& D) const {

@@ -4,6 +4,7 @@
 
 #include "coast/record/error.hpp"
 #include "coast/study/outage_runs.hpp"
+#include "turn_on.hpp"
 
 namespace coast::diagnose {
 
@@ -41,7 +42,9 @@ Fit MissionRun::fit() const {
   }
   const auto count = static_cast<double>(solution_.forward.innovations.size());
   if (dof > 0.0) fit.nis = nis / dof;
-  if (count > 0.0) fit.log_likelihood_per_epoch = log_likelihood() / count;
+  double of_biases = 0.0;  // the run began about those that it found
+  for (const TurnOn& one : beyond_stated(*this)) of_biases -= 0.5 * std::pow(one.value / one.stated, 2);
+  if (count > 0.0) fit.log_likelihood_per_epoch = (log_likelihood() + of_biases) / count;
   const std::vector<study::Outage> outages =
       study::outages_of(sweep, mission_.start().nav.t, mission_.mission().imu.samples.back().t);
   const std::vector<study::OutageResult> results =

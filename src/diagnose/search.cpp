@@ -30,6 +30,14 @@ void loosen_start(const study::PreparedMission& mission, const estimate::Smoothe
   input.setup.start = start;
 }
 
+/// What a gyro showed standing still is bias and constant effect alike.
+void forget_standstill(const TurnOn& bias, study::Setup& setup) {
+  if (bias.sensor != noise::Sensor::kGyro) return;
+  const Eigen::Vector3d axis_b = setup.C_s_b.col(bias.axis);
+  setup.start->gyro_bias -= axis_b * axis_b.dot(setup.start->gyro_bias);
+  setup.start->gyro_bias_sd.reset();
+}
+
 }  // namespace
 
 Search::Search(const MissionInput& input, const DiagnosisOptions& options, Order order, const study::Progress& progress)
@@ -86,15 +94,18 @@ double Search::evidence() const {
   double prices = parameters + log_choices() * static_cast<double>(taken_.size());
   for (const Finding& f : result_.findings) prices += f.price;
   for (const NoiseFinding& f : random_effects_) prices += price_of_random_effect(f.sd / f.value);
-  return run_->log_likelihood() - prices;
+  for (const TurnOn& one : beyond_stated(*run_)) prices += one.price();
+  return log_likelihood_of(*run_) + forgotten_ - prices;
 }
 
 Examination Search::examined(const std::function<bool(geo::GpsTime)>& counts, Eigen::Index draws) const {
   std::vector<Examination::Started> started;
   for (const Taken& one : taken_)
     if (one.from) started.push_back({one.hypothesis, *one.from});
-  return examine(run_->mission(), run_->layout(), run_->solution().knots, run_->hypotheses(),
-                 {.draws = draws, .seed = options_.seed, .counts = counts, .started = std::move(started)});
+  Examination examination = examine(run_->mission(), run_->layout(), run_->solution().knots, run_->hypotheses(),
+                                    {.draws = draws, .seed = options_.seed, .counts = counts, .started = std::move(started)});
+  for (const TurnOn& bias : shared_) move_to_stated(bias, *run_, examination);
+  return examination;
 }
 
 void Search::add_draws(Examination& examination) {
@@ -123,6 +134,7 @@ void Search::run_from(const MissionRun& last) {
   model_noise(current_);
   const estimate::SmoothedKnot& start = last.solution().smoothed.front();
   loosen_start(last.prepared(), start, current_);
+  for (const TurnOn& bias : shared_) forget_standstill(bias, current_.setup);
   if (!sensors_at_start_) sensors_at_start_ = SensorsAtStart{last.layout(), start.x};
   if (sensors_are_elsewhere(last)) find_sensors_anew();
   current_.setup.start_sensor_errors = sensor_states_in(layout_of(current_), sensors_at_start_->layout, sensors_at_start_->x);
@@ -138,6 +150,21 @@ void Search::find_sensors_anew() {
   }
 }
 
+void Search::share(const TurnOn& bias) {
+  const double before = run_->log_likelihood();
+  shared_.push_back(bias);
+  // Soon after the start a step is the same.
+  exchanged_.push_back(run_->hypotheses().bias_step(sensor_site(bias.sensor), bias.axis));
+  run_again();
+  forgotten_ += before - run_->log_likelihood();
+}
+
+double Search::log_likelihood_of(const MissionRun& run) const {
+  double sum = run.log_likelihood();
+  for (const TurnOn& bias : shared_) sum += gain_about_stated(bias, run);
+  return sum;
+}
+
 bool Search::sensors_are_elsewhere(const MissionRun& last) const {
   constexpr double kFar = 2.0;  // sd of what is known of the sensors beforehand
   const Eigen::VectorXd found = last.solution().smoothed.front().x.head(last.layout().sensor_end());
@@ -150,7 +177,7 @@ bool Search::sensors_are_elsewhere(const MissionRun& last) const {
 double Search::likelihood_from(const MissionRun& last) {
   try {
     run_from(last);
-    return run_->log_likelihood();
+    return log_likelihood_of(*run_);
   } catch (const NumericalError&) {
     run_.reset();
     return -std::numeric_limits<double>::infinity();
@@ -162,7 +189,7 @@ bool Search::run_moved(const std::vector<Taken>& before) {
   constexpr double kLess = 3.0;  // that a run may be for the other point about which it is linearised
   const RunPtr start = std::move(run_);
   for (int i = 0; i <= kHalvings; ++i) {
-    if (likelihood_from(*start) > start->log_likelihood() - kLess) return true;
+    if (likelihood_from(*start) > log_likelihood_of(*start) - kLess) return true;
     for (std::size_t k = 0; k < taken_.size(); ++k) taken_[k].value = 0.5 * (taken_[k].value + before[k].value);
   }
   taken_ = before;

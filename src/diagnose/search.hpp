@@ -8,6 +8,7 @@
 #include "mission_run.hpp"
 #include "noise_check.hpp"
 #include "noise_scan.hpp"
+#include "turn_on.hpp"
 
 namespace coast::diagnose {
 
@@ -61,7 +62,7 @@ class Search {
   [[nodiscard]] const MissionInput& modelled() const { return current_; }
   [[nodiscard]] const std::vector<Taken>& taken() const { return taken_; }
   [[nodiscard]] bool has_found_anything() const {
-    return !taken_.empty() || !noise_findings().empty() || !added_.empty() || !result_.noise.empty();
+    return !taken_.empty() || !noise_findings().empty() || !added_.empty() || !result_.noise.empty() || !turned_on_.empty();
   }
   [[nodiscard]] bool has_taken_noise() const { return noise_.has_value() || !added_.empty(); }
   [[nodiscard]] std::size_t runs() const { return result_.runs; }
@@ -91,6 +92,13 @@ class Search {
   /// too. Takes it (all of it, where a share was taken) in its place, likelier or not, with room for one effect more, and never
   /// the other again. @return  whether the recording can show it, and the filter gets through with it
   bool put_lasting_in_place_of(std::size_t index);
+  /// Biases at the start that the error model does not have, once all else is found.
+  void look_at_start();
+  [[nodiscard]] std::size_t turned_on() const { return turned_on_.size(); }
+  /// Of a constant the first run makes a bias, about which all others are linearised: no score tells of an effect that is one
+  /// during this mission. Takes the most plausible of these as all of the bias, likelier or not, with room for one effect more.
+  /// @return  whether there is one, and the filter gets through with it
+  bool put_constant_in_place_of_bias(std::size_t index);
   /// Every effect of the catalogue is put to the test once more beside all the others: is it needed, and is it this one?
   /// @return  whether another took its place, or none
   bool review();
@@ -120,6 +128,10 @@ class Search {
   [[nodiscard]] bool sensors_are_elsewhere(const MissionRun& last) const;
   /// By a run about their prior mean.
   void find_sensors_anew();
+  /// From now on the bias is what the error model has of it: another effect has the rest of the constant.
+  void share(const TurnOn& bias);
+  /// About the means that the error model has of biases that are shared.
+  [[nodiscard]] double log_likelihood_of(const MissionRun& run) const;
   void model_noise(MissionInput& input) const;
 
   // Random effects, converters, and noise that is stated (search_noise.cpp).
@@ -230,6 +242,8 @@ class Search {
     Eigen::VectorXd x;
   };
   std::optional<SensorsAtStart> sensors_at_start_;
+  std::vector<TurnOn> shared_;
+  double forgotten_ = 0.0;  ///< log-likelihood that the standstill was worth
   RunPtr run_;
   std::vector<Taken> taken_;
   std::vector<Eigen::Index> refused_;    ///< until another is taken
@@ -249,6 +263,7 @@ class Search {
   std::vector<AddedNoise> refused_noise_;
   std::vector<FittedEffect> beaten_;  ///< random effects that explain less than a mean effect does
   std::vector<NoiseFinding> random_effects_;
+  std::vector<NoiseFinding> turned_on_;
   std::vector<Mark> marks_;
   Diagnosis result_;
 };

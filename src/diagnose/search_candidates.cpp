@@ -28,6 +28,10 @@ Candidates Search::candidates() const {
     if (was_refused(s) || !(s.p_value < of_catalogue())) continue;
     result.all.push_back({.suspicion = s, .by_runs = {}});
   }
+  // Nothing that is plausible explains what is left: what is not, where it is the likelier all the same.
+  if (result.all.empty())
+    for (const Suspicion& s : suspicions_.implausible)
+      if (!was_refused(s) && evidence_of(s) > kLogOdds) result.all.push_back({.suspicion = s, .by_runs = {}});
   if (result.all.empty()) return result;
   for (const Suspicion& s : suspicions_.all) {
     if (was_refused(s)) continue;
@@ -44,7 +48,7 @@ Candidates Search::candidates() const {
 
 void Search::run_without(Candidate& candidate) {
   const Suspicion& s = candidate.suspicion;
-  const double before = run_->log_likelihood();
+  const double before = log_likelihood_of(*run_);
   const double choice = log_choices();
   const std::vector<Taken> taken = taken_;
   const MissionInput input = current_;
@@ -85,7 +89,7 @@ Suspicion Search::winner() {
 
 bool Search::makes_likelier(const Suspicion& s) {
   constexpr int kHalvings = 4;
-  const double before = run_->log_likelihood();
+  const double before = log_likelihood_of(*run_);
   const std::vector<Taken> others = taken_;
   take(s);
   const RunPtr start = std::move(run_);
@@ -142,8 +146,8 @@ bool Search::take_time_offset() {
 void Search::reconsider(const Taken& one, double gain) {
   auto at = std::ranges::find(candidates_.all, one.hypothesis, &Candidate::hypothesis);
   if (at == candidates_.all.end()) {
-    const auto suspicion = std::ranges::find(suspicions_.all, one.hypothesis, &Suspicion::hypothesis);
-    if (suspicion == suspicions_.all.end() || gain < 0.5 * result_.threshold) return;
+    const Suspicion* suspicion = suspicions_.of(one.hypothesis);
+    if (suspicion == nullptr || gain < 0.5 * result_.threshold) return;
     at = candidates_.all.insert(candidates_.all.end(), {.suspicion = *suspicion, .by_runs = {}});
   }
   at->by_runs = gain;
@@ -169,11 +173,11 @@ bool Search::last_is_confirmed() {
   const Finding finding = result_.findings.back();
   const bool has_name = !is_suggested(*finding.hypothesis.effect);
   if (!has_name && finding.hypothesis.effect->relation.empty()) return true;  // nothing that has a name looks like a line
-  const double with_it = run_->log_likelihood();
+  const double with_it = log_likelihood_of(*run_);
   take_out(taken_.size() - 1);
   if (!has_name) refused_.push_back(one.hypothesis);  // among those that have one
   candidates_ = candidates();
-  const double gain = with_it - run_->log_likelihood();
+  const double gain = with_it - log_likelihood_of(*run_);
   if (!has_name) return form_is_confirmed(one, finding, gain);
   reconsider(one, gain);
   if (candidates_.all.empty()) return false;
@@ -216,8 +220,24 @@ bool Search::put_lasting_in_place_of(std::size_t index) {
     take(from_the_start);
   }
   const RunPtr without_it = std::move(run_);
-  const double gained = likelihood_from(*without_it) - without_it->log_likelihood();
+  const double gained = likelihood_from(*without_it) - log_likelihood_of(*without_it);
   if (!is_taken) result_.findings.back().delta_log_likelihood = gained;
+  return run_ != nullptr;
+}
+
+bool Search::put_constant_in_place_of_bias(std::size_t index) {
+  const TurnOn bias = beyond_stated(*run_)[index];
+  const std::optional<Suspicion> constant = constant_like(bias, *run_);
+  const auto is_taken = [&](const Taken& one) { return one.hypothesis == constant->hypothesis; };
+  if (!constant || was_refused(*constant) || std::ranges::any_of(taken_, is_taken)) return false;
+  candidates_ = {};
+  ++options_.most_effects;
+  noise_is_behind_ = true;
+  share(bias);
+  take(*constant);
+  const RunPtr without_it = std::move(run_);
+  result_.findings.back().delta_log_likelihood = likelihood_from(*without_it) - log_likelihood_of(*without_it);
+  if (run_ != nullptr) run_again();  // sensors are found anew about what is left of the bias
   return run_ != nullptr;
 }
 

@@ -61,7 +61,7 @@ EffectPtr Search::refined(const EffectPtr& line) {
 }
 
 void Search::try_out(const Proposal& form) {
-  const double before = run_->log_likelihood();
+  const double before = log_likelihood_of(*run_);
   const std::vector<Taken> taken = taken_;
   const std::vector<Finding> findings = result_.findings;
   suggested_.push_back(form.effect->relation.empty() ? refined(form.effect) : form.effect);

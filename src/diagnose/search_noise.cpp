@@ -47,13 +47,13 @@ void Search::look_at_samples() {
     for (int axis = 0; axis < 3; ++axis) {
       const std::optional<double> found = effect.find(axis_series(input_, effect.site, axis));
       if (!found) continue;
-      const double before = run_->log_likelihood();
+      const double before = log_likelihood_of(*run_);
       MissionInput modelled = input_;
       model_noise(modelled);  // noise is raised beside what was fitted
       effect.model(modelled, effect.site, axis, *found);
       std::swap(input_.imu, modelled.imu);
       run_again();
-      const double gained = run_->log_likelihood() - before;
+      const double gained = log_likelihood_of(*run_) - before;
       marks_.push_back({&effect, axis, *found});
       if (gained > kLeastOfSamples) {
         result_.noise.push_back(described(marks_.back(), gained));
@@ -108,11 +108,11 @@ bool Search::fit_noise_again() {
   if (!std::exchange(noise_is_behind_, false)) return false;
   const bool was_tried = std::exchange(noise_tried_, false);
   if (!noise_) return was_tried;
-  const double before = run_->log_likelihood();
+  const double before = log_likelihood_of(*run_);
   const FittedNoise last = *std::exchange(noise_, std::nullopt);
   run_again();
   fit_noise();
-  if (run_->log_likelihood() > before) return true;
+  if (log_likelihood_of(*run_) > before) return true;
   noise_ = last;  // a part of a long mission is not all of it
   run_again();
   return false;

@@ -14,15 +14,26 @@ Diagnosis Search::finish() {
   fold_residues();
   std::ranges::move(noise_findings(), std::back_inserter(result_.noise));
   std::ranges::move(random_effects_, std::back_inserter(result_.noise));
+  std::ranges::move(turned_on_, std::back_inserter(result_.noise));
   join_entries_with_exits();
   join_quadratures();
   std::ranges::stable_sort(result_.findings, std::ranges::greater{}, &Finding::delta_log_likelihood);
   result_.suggested.insert(result_.suggested.end(), suggested_.begin(), suggested_.end());
   result_.after = run_->fit();
+  const auto epochs = static_cast<double>(run_->solution().forward.innovations.size());
   result_.outage_change = outage_difference(result_.before, result_.after);
   result_.innovations_after = run_->solution().forward.innovations;
   result_.modelled = std::move(current_);
+  for (const TurnOn& one : beyond_stated(*run_)) {
+    widen(one, result_.modelled);
+    result_.after.log_likelihood_per_epoch += one.gain() / epochs;
+  }
   return std::move(result_);
+}
+
+void Search::look_at_start() {
+  turned_on_.clear();
+  for (const TurnOn& one : beyond_stated(*run_)) turned_on_.push_back(described(one));
 }
 
 std::vector<Alternative> Search::found() const {
@@ -35,6 +46,7 @@ std::vector<Alternative> Search::found() const {
   };
   add(noise_findings());
   add(random_effects_);
+  add(turned_on_);
   return all;
 }
 
@@ -55,7 +67,8 @@ void Search::tell_of(const Search& other, double log_odds) {
     std::ranges::sort(alternatives, {}, &Alternative::log_odds);
   };
   for (std::size_t i = 0; i < result_.findings.size(); ++i) add(ours[i], result_.findings[i].alternatives);
-  for (NoiseFinding& f : random_effects_) add({f.name, f.sensor, f.axis, 0.0}, f.alternatives);
+  for (std::vector<NoiseFinding>* some : {&random_effects_, &turned_on_})
+    for (NoiseFinding& f : *some) add({f.name, f.sensor, f.axis, 0.0}, f.alternatives);
 }
 
 std::vector<NoiseFinding> Search::noise_findings() const {

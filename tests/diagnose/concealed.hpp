@@ -46,4 +46,24 @@ inline diagnose::MissionInput honest_mission(std::uint64_t seed, double duration
   return honest_mission_with_truth(seed, duration_s).input;
 }
 
+inline const diagnose::DiagnosisOptions kWithoutTwins{.twins = 0};
+
+/// The one effect found, by name and axis; nothing where there are more or others.
+inline const diagnose::Finding* only(const diagnose::Diagnosis& d, std::string_view name, std::string_view axis) {
+  if (d.findings.size() != 1) return nullptr;
+  const diagnose::Finding& f = d.findings.front();
+  return f.hypothesis.effect->name == name && f.hypothesis.axis_name() == axis ? &f : nullptr;
+}
+
+/// What was found, for messages.
+inline std::string names(const diagnose::Diagnosis& d) {
+  std::string text;
+  for (const diagnose::Finding& f : d.findings)
+    text += fmt::format("{} {} {} {} +- {}; ", f.hypothesis.effect->name, f.hypothesis.axis_name(),
+                        f.hypothesis.effect->equation, f.value, f.sd);
+  for (const diagnose::NoiseFinding& f : d.noise)
+    text += fmt::format("{} {} {} {} +- {}; ", f.name, f.sensor, f.axis, f.value, f.sd);
+  return text;
+}
+
 }  // namespace coast::test

@@ -16,22 +16,9 @@ namespace {
 
 using namespace diagnose;
 
-const DiagnosisOptions kWithoutTwins{.twins = 0};
-
-/// The one effect found, by name and axis; nothing where there are more or others.
-const Finding* only(const Diagnosis& d, std::string_view name, std::string_view axis) {
-  if (d.findings.size() != 1) return nullptr;
-  const Finding& f = d.findings.front();
-  return f.hypothesis.effect->name == name && f.hypothesis.axis_name() == axis ? &f : nullptr;
-}
-
-std::string names(const Diagnosis& d) {
-  std::string text;
-  for (const Finding& f : d.findings)
-    text += fmt::format("{} {} {} {} +- {}; ", f.hypothesis.effect->name, f.hypothesis.axis_name(),
-                        f.hypothesis.effect->equation, f.value, f.sd);
-  return text;
-}
+using test::kWithoutTwins;
+using test::names;
+using test::only;
 
 TEST(Diagnosis, NothingIsMissingFromAnHonestMission) {
   const Diagnosis d = diagnose::diagnose(test::honest_mission(1), kWithoutTwins, {});

@@ -6,6 +6,7 @@
 
 #include "coast/geo/earth.hpp"
 #include "coast/geo/units.hpp"
+#include "coast/io/yaml.hpp"
 #include "coast/noise/chi_square.hpp"
 #include "coast/study/interpolation.hpp"
 #include "coast/study/solution.hpp"
@@ -90,6 +91,32 @@ TEST(Examination, ScoresAreSlopesOfTheLogLikelihood) {
     // The smoothed velocity has a little of the innovations in it too: 0.4 standard deviations here, where the filter's has 23.
     EXPECT_NEAR(e.score(i) * sd, slope, 0.5 + 0.03 * std::abs(slope)) << name << " " << axis;
   }
+}
+
+// What is known of a constant that the filter estimates itself is its prior, 1/s^2, however long it looks: all of it comes back
+// as a shift of the prior mean. A rate turns the antenna and the wheels about the IMU too.
+TEST(Examination, OfAConstantThatIsAStateTheInformationIsThatOfItsPrior) {
+  MissionInput input = test::honest_mission(13);
+  input.setup.model = noise::ImuErrorModel::from(io::parse_yaml(R"(
+schema: coast.imu_error_model/1
+sensor: test
+gyro:
+  all: [{process: white_noise, density: 0.6, unit: deg/sqrt(h)}, {process: random_constant, sigma: 300, unit: deg/h}]
+accel:
+  all: [{process: white_noise, density: 200, unit: ug/sqrt(Hz)}, {process: random_constant, sigma: 10, unit: mg}]
+)",
+                                                                "model.yaml"));
+  input.setup.filter.vehicle.non_holonomic = estimate::NonHolonomic{.point_b = {-1.5, 0.4, 0.8}, .pitch = 0.02, .yaw = -0.03};
+  input.setup.start = study::PreparedMission(input.imu, input.gnss, input.setup, {}).start();
+  input.setup.start->gyro_bias_sd.reset();  // seen standing still they are known better
+  const Examined examined(input);
+  const Examination e = examined.examine(0);
+  for (const auto& [site, sensor] : {std::pair{Site::kGyro, noise::Sensor::kGyro}, {Site::kAccel, noise::Sensor::kAccel}})
+    for (int axis = 0; axis < 3; ++axis) {
+      const Eigen::Index i = examined.hypotheses().bias_step(site, axis);
+      // But for the part that the filter does not find in 300 s.
+      EXPECT_NEAR(e.information(i, i) * std::pow(input.setup.model.bias_sd(sensor, axis), 2), 1.0, 0.02) << name(site) << axis;
+    }
 }
 
 // Likewise of what has started, with its information: along a, log L = s a - I a^2 / 2, and between two at a time, by runs that

@@ -83,9 +83,12 @@ struct LargestByChance {
 
 struct Suspicions {
   std::vector<Suspicion> all;  ///< by hypothesis; what cannot be seen at all is left out
-  /// Of which the mission shows nothing that is plausible: they are not looked for, but what is found may look like them.
+  /// Of which the mission shows nothing that is plausible: they are not looked for while anything else explains it, but what is
+  /// found may look like them.
   std::vector<Suspicion> implausible;
   LargestByChance chance;
+  /// Of either; null where the mission cannot tell it from what is taken.
+  [[nodiscard]] const Suspicion* of(Eigen::Index hypothesis) const;
   /// By what chance does as it is known already, where there were no draws.
   void judge(const LargestByChance& by_chance);
 };

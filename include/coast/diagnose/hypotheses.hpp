@@ -57,6 +57,8 @@ class Hypotheses : public estimate::Effects {
   [[nodiscard]] Eigen::Index size() const override { return static_cast<Eigen::Index>(all_.size()); }
   [[nodiscard]] const std::vector<Hypothesis>& all() const { return all_; }
   [[nodiscard]] const Hypothesis& operator[](Eigen::Index i) const { return all_[static_cast<std::size_t>(i)]; }
+  /// Where a constant error of a sensor axis is: a bias that steps. @param axis  0 to 2
+  [[nodiscard]] Eigen::Index bias_step(Site site, Eigen::Index axis) const;
   /// Why an effect is left out; nothing where it is not.
   [[nodiscard]] const char* why_not_seen(const Effect& effect) const;
   /// What the sensor axes see at a sample.
@@ -64,6 +66,8 @@ class Hypotheses : public estimate::Effects {
   void add_sensor_errors(const estimate::SampleView& sample, Eigen::Matrix3Xd& gyro_b,
                          Eigen::Matrix3Xd& accel_b) const override;
   void add_measurement_errors(const estimate::MeasurementView& measurement, Eigen::MatrixXd& D) const override;
+  /// Of a fix alone: without what gyros that err make of the prediction. @param measurement  position or velocity of a fix
+  void add_fix_errors(const estimate::MeasurementView& measurement, Eigen::MatrixXd& D) const;
 
  private:
   struct Part {
@@ -73,7 +77,8 @@ class Hypotheses : public estimate::Effects {
   };
   [[nodiscard]] record::NavState smoothed(const record::NavState& filtered) const;
   void add_slip(const estimate::MeasurementView& measurement, Eigen::MatrixXd& D) const;
-  void add_fix_errors(const estimate::MeasurementView& measurement, Eigen::MatrixXd& D) const;
+  /// Of the measured rate, with which what a filter predicts of a point off the IMU turns, body axes.
+  [[nodiscard]] Eigen::Matrix3Xd rate_errors(const estimate::MeasurementView& measurement, Eigen::Index columns) const;
 
   const estimate::Mission& mission_;
   const estimate::FilterOptions& filter_;

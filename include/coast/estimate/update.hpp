@@ -57,6 +57,8 @@ struct NonHolonomic {
   double yaw = 0.0;
 };
 [[nodiscard]] Linearised non_holonomic(const FilterState& state, const UpdateContext& context, const NonHolonomic& constraint);
+/// Body to vehicle axes. @param pitch, yaw  of the vehicle against the body, rad
+[[nodiscard]] Eigen::Matrix3d C_b_v_of(double pitch, double yaw);
 /// d(C_b_v u) by the vehicle's pitch and yaw against the body: columns of m/s per rad, rows y and z.
 /// @param u_b  velocity of the constraint's point, body axes, m/s
 [[nodiscard]] Eigen::Matrix2d slip_by_mounting(double pitch, double yaw, const Eigen::Vector3d& u_b);

@@ -5,13 +5,9 @@
 
 namespace coast::estimate {
 
-namespace {
-
 Eigen::Matrix3d C_b_v_of(double pitch, double yaw) {
   return geo::dcm_from_euler({.roll = 0.0, .pitch = pitch, .yaw = yaw}).transpose();
 }
-
-}  // namespace
 
 // d(C_b_v)/d(pitch) = -[e_y x] C_b_v;   d(C_b_v)/d(yaw) = -C_b_v [e_z x]
 Eigen::Matrix2d slip_by_mounting(double pitch, double yaw, const Eigen::Vector3d& u_b) {
