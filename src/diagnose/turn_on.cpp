@@ -115,8 +115,9 @@ NoiseFinding described(const TurnOn& one) {
           .delta_log_likelihood = one.gain(),
           .p_value = std::min(1.0, kAxes * noise::chi2_survival(1.0, ratio * ratio)),
           .place = NoiseFinding::Place::kErrorModel,
-          .meaning = "The bias at the start is larger than the error model has it.",
-          .equation = fmt::format("d_i = constant, of which the error model has a sigma of {:.3g}", one.stated),
+          .meaning =
+              fmt::format("The bias at the start is {:.2g} times the sigma that the error model has of it.", std::abs(ratio)),
+          .equation = fmt::format("d_i = constant, sigma {:.3g}", one.stated),
           .separating_manoeuvre = "The same IMU switched on again: what is a bias of that one start is another one then."};
 }
 
