@@ -187,13 +187,13 @@ double Search::likelihood_from(const MissionRun& last) {
 bool Search::run_moved(const std::vector<Taken>& before) {
   constexpr int kHalvings = 3;
   constexpr double kLess = 3.0;  // that a run may be for the other point about which it is linearised
-  const RunPtr start = std::move(run_);
+  Standing start = leave();
   for (int i = 0; i <= kHalvings; ++i) {
-    if (likelihood_from(*start) > log_likelihood_of(*start) - kLess) return true;
+    if (likelihood_from(*start.run) > log_likelihood_of(*start.run) - kLess) return true;
     for (std::size_t k = 0; k < taken_.size(); ++k) taken_[k].value = 0.5 * (taken_[k].value + before[k].value);
   }
   taken_ = before;
-  run_from(*start);
+  return_to(std::move(start));
   return false;
 }
 
@@ -260,6 +260,11 @@ void Search::model_noise(MissionInput& input) const {
 void Search::run_current() {
   run_ = std::make_shared<const MissionRun>(current_, grade_, suggested_, progress_);
   ++result_.runs;
+}
+
+void Search::return_to(Standing&& standing) {
+  run_ = std::move(standing.run);
+  current_ = std::move(standing.input);
 }
 
 std::vector<Eigen::Index> rows_of(const std::vector<Taken>& taken, Eigen::Index hypotheses) {

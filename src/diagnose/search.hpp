@@ -107,6 +107,8 @@ class Search {
   void set_held_out(std::size_t index, double gain) { result_.findings[index].held_out_gain = gain; }
 
  private:
+  using RunPtr = std::shared_ptr<const MissionRun>;
+
   [[nodiscard]] double of_catalogue() const;
   /// What draws say beside an examination that had none: those of an earlier run, where they still hold.
   void add_draws(Examination& examination);
@@ -124,6 +126,13 @@ class Search {
   /// may be too long, or, where nothing is linear, wrong. @return  whether they moved at all
   bool run_moved(const std::vector<Taken>& before);
   void run_current();
+  /// A run, to which a trial that was in vain returns: made again it would be another one, along another trajectory.
+  struct Standing {
+    RunPtr run;
+    MissionInput input;
+  };
+  [[nodiscard]] Standing leave() { return {std::move(run_), current_}; }
+  void return_to(Standing&& standing);
   /// Whether a run found errors of the sensors far from those about which it was linearised.
   [[nodiscard]] bool sensors_are_elsewhere(const MissionRun& last) const;
   /// By a run about their prior mean.
@@ -223,8 +232,6 @@ class Search {
   /// Sine and cosine become amplitude and phase.
   void join_quadratures();
   void describe_what_was_not_found();
-
-  using RunPtr = std::shared_ptr<const MissionRun>;
 
   DiagnosisOptions options_;
   Order order_;

@@ -51,10 +51,9 @@ void Search::run_without(Candidate& candidate) {
   const double before = log_likelihood_of(*run_);
   const double choice = log_choices();
   const std::vector<Taken> taken = taken_;
-  const MissionInput input = current_;
-  RunPtr start = std::move(run_);
+  Standing start = leave();
   taken_.push_back({s.hypothesis, s.from, {}, s.estimate});
-  double best = likelihood_from(*start);
+  double best = likelihood_from(*start.run);
   if (run_ != nullptr) {
     const Movement moved = move_all(examined({}, 0));
     const RunPtr first = std::move(run_);
@@ -65,8 +64,7 @@ void Search::run_without(Candidate& candidate) {
   }
   candidate.by_runs = best - before;
   taken_ = taken;
-  current_ = input;
-  run_ = std::move(start);
+  return_to(std::move(start));
 }
 
 void Search::run_candidates() {
@@ -92,14 +90,14 @@ bool Search::makes_likelier(const Suspicion& s) {
   const double before = log_likelihood_of(*run_);
   const std::vector<Taken> others = taken_;
   take(s);
-  const RunPtr start = std::move(run_);
+  Standing start = leave();
   const auto gains_enough = [&](const MissionRun& last) {
     result_.findings.back().delta_log_likelihood = likelihood_from(last) - before;
     return result_.findings.back().delta_log_likelihood >= 0.5 * result_.threshold;
   };
   for (double value = s.estimate, i = 0; i <= kHalvings; ++i, value *= 0.5) {
     taken_.back().value = value;
-    bool is_taken = gains_enough(*start);
+    bool is_taken = gains_enough(*start.run);
     if (!is_taken && run_ != nullptr) {
       move_all(examined({}, 0));
       const RunPtr first = std::move(run_);
@@ -114,7 +112,7 @@ bool Search::makes_likelier(const Suspicion& s) {
   taken_.pop_back();
   result_.findings.pop_back();
   refused_.push_back(s.hypothesis);
-  run_from(*start);
+  return_to(std::move(start));
   return false;
 }
 

@@ -65,8 +65,8 @@ void Search::try_out(const Proposal& form) {
   const std::vector<Taken> taken = taken_;
   const std::vector<Finding> findings = result_.findings;
   suggested_.push_back(form.effect->relation.empty() ? refined(form.effect) : form.effect);
-  const RunPtr start = std::move(run_);
-  run_from(*start);
+  Standing start = leave();
+  run_from(*start.run);
   const auto first = static_cast<Eigen::Index>(run_->hypotheses().size()) - static_cast<Eigen::Index>(form.effect->axes.size());
   for (Eigen::Index i = first; i < run_->hypotheses().size(); ++i)
     take({.hypothesis = i,
@@ -89,7 +89,7 @@ void Search::try_out(const Proposal& form) {
   suggested_.pop_back();
   taken_ = taken;
   result_.findings = findings;
-  run_from(*start);
+  return_to(std::move(start));
 }
 
 bool Search::form_is_confirmed(const Taken& form, const Finding& finding, double gain) {
