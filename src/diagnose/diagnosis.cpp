@@ -94,7 +94,7 @@ bool keep_likelier(Searched& best, Searched other) {
 
 using Exchange = std::function<bool(Search&)>;
 
-/// Goes on from a copy with one thing in place of another. @return  whether it came to an end
+/// One thing in place of another, and on to the end. @return  whether it came to an end
 bool try_exchange(Searched& other, const Exchange& exchange) {
   try {
     if (!exchange(*other.search)) return false;
@@ -105,8 +105,9 @@ bool try_exchange(Searched& other, const Exchange& exchange) {
   }
 }
 
-/// The likelier one stays. @return  whether it is the other  @param in_vain  of runs that led to nothing
-bool is_likelier_with(const Exchange& exchange, Searched& best, std::size_t& in_vain) {
+/// Puts one thing in place of another; the likelier of the two searches stays. @return  whether it is the new one
+/// @param in_vain  takes runs that led to nothing
+bool goes_on_with(const Exchange& exchange, Searched& best, std::size_t& in_vain) {
   Searched other{std::make_unique<Search>(*best.search), best.rejected};
   const bool is_possible = try_exchange(other, exchange);
   const std::size_t runs = other.search->runs() - best.search->runs();
@@ -120,7 +121,7 @@ std::size_t try_all_lasting(Searched& best) {
   std::size_t in_vain = 0;
   for (std::size_t i = 0; i < best.search->taken().size();) {
     const Exchange exchange = [i](Search& search) { return search.put_lasting_in_place_of(i); };
-    i = best.search->may_have_lasted(i) && is_likelier_with(exchange, best, in_vain) ? 0 : i + 1;
+    i = best.search->may_have_lasted(i) && goes_on_with(exchange, best, in_vain) ? 0 : i + 1;
   }
   return in_vain;
 }
@@ -129,7 +130,7 @@ std::size_t try_all_lasting(Searched& best) {
 std::size_t try_all_constant(Searched& best) {
   std::size_t in_vain = 0;
   for (std::size_t i = 0; i < best.search->turned_on();)
-    i = is_likelier_with([i](Search& search) { return search.put_constant_in_place_of_bias(i); }, best, in_vain) ? 0 : i + 1;
+    i = goes_on_with([i](Search& search) { return search.put_constant_in_place_of_bias(i); }, best, in_vain) ? 0 : i + 1;
   return in_vain;
 }
 
@@ -155,9 +156,10 @@ Diagnosis diagnose(const MissionInput& input, const DiagnosisOptions& options, c
   const auto begin = [&](Order order) { return Searched{std::make_unique<Search>(input, options, order, progress)}; };
   const auto twins = static_cast<std::size_t>(std::max(0, options.twins));
   const auto compared = [&](const Search& search, const std::vector<MissionInput>& given) {
+    const MissionInput modelled = search.modelled();
     const auto recording = [&](std::size_t i) {
       if (!given.empty()) return given[i];
-      MissionInput one = twin(search.run().path(), search.modelled(), simulate::stream_seed(options.seed, {3, i}));
+      MissionInput one = twin(search.run().path(), modelled, simulate::stream_seed(options.seed, {3, i}));
       one.setup.start = input.setup.start;  // found as that of the recording was
       one.setup.start_sensor_errors = input.setup.start_sensor_errors;
       return one;

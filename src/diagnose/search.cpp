@@ -55,6 +55,7 @@ Search::Search(const MissionInput& input, const DiagnosisOptions& options, Order
 }
 
 bool Search::step() {
+  if (give_up_what_bends()) return true;
   Examination examination = examined({}, 0);
   const std::vector<Taken> before = taken_;
   const double moved = follow(examination);
@@ -228,6 +229,7 @@ void Search::give_up(std::size_t index) {
   if (form != suggested_.end()) refused_forms_.push_back(*form);
   taken_.erase(taken_.begin() + at);
   result_.findings.erase(result_.findings.begin() + at);
+  relation_.reset();
   run_again();
   noise_is_behind_ = true;
 }

@@ -59,7 +59,9 @@ class Search {
   Diagnosis finish();
 
   [[nodiscard]] const MissionRun& run() const { return *run_; }
-  [[nodiscard]] const MissionInput& modelled() const { return current_; }
+  [[nodiscard]] const MissionInput& input() const { return current_; }
+  /// What is filtered, with biases that were told in the error model.
+  [[nodiscard]] MissionInput modelled() const;
   [[nodiscard]] const std::vector<Taken>& taken() const { return taken_; }
   [[nodiscard]] bool has_found_anything() const {
     return !taken_.empty() || !noise_findings().empty() || !added_.empty() || !result_.noise.empty() || !turned_on_.empty();
@@ -205,6 +207,9 @@ class Search {
   /// Its coefficients are found together with those that are taken already. Refused where it does not explain more than the
   /// likeliest effect that has a name.
   void try_out(const Proposal& form);
+  /// A relation's signals are of the trajectory, which it bends: one that run after run bends it further until the mission is
+  /// less likely than it was without it does not hold. @return  whether there was one
+  bool give_up_what_bends();
   /// Whether it still explains more than everything that has a name, which else takes its place.
   /// @param gain  in log-likelihood of what was taken out just now
   bool form_is_confirmed(const Taken& form, const Finding& finding, double gain);
@@ -266,11 +271,16 @@ class Search {
   double explained_ = 0.0;        ///< log-likelihood by what was taken since
   std::vector<EffectPtr> suggested_;
   std::vector<EffectPtr> refused_forms_;  ///< for good
+  struct Relation {
+    EffectPtr effect;
+    double without = 0.0;  ///< log-likelihood, before it was taken
+  };
+  std::optional<Relation> relation_;  ///< the last one, as long as nothing was given up since
   std::vector<AddedNoise> added_;
   std::vector<AddedNoise> refused_noise_;
   std::vector<FittedEffect> beaten_;  ///< random effects that explain less than a mean effect does
   std::vector<NoiseFinding> random_effects_;
-  std::vector<NoiseFinding> turned_on_;
+  std::vector<TurnOn> turned_on_;
   std::vector<Mark> marks_;
   Diagnosis result_;
 };

@@ -224,7 +224,7 @@ bool Search::put_lasting_in_place_of(std::size_t index) {
 }
 
 bool Search::put_constant_in_place_of_bias(std::size_t index) {
-  const TurnOn bias = beyond_stated(*run_)[index];
+  const TurnOn bias = turned_on_[index];
   const std::optional<Suspicion> constant = constant_like(bias, *run_);
   const auto is_taken = [&](const Taken& one) { return one.hypothesis == constant->hypothesis; };
   if (!constant || was_refused(*constant) || std::ranges::any_of(taken_, is_taken)) return false;

@@ -82,7 +82,9 @@ void Search::try_out(const Proposal& form) {
     noise_is_behind_ = true;
     Finding& found = result_.findings[taken.size()];
     found.delta_log_likelihood = gained;
-    if (!form.effect->relation.empty()) found.stability = form.stability;
+    if (form.effect->relation.empty()) return;
+    found.stability = form.stability;
+    relation_ = {form.effect, before};
     return;
   }
   refused_forms_.push_back(form.effect);
@@ -90,6 +92,15 @@ void Search::try_out(const Proposal& form) {
   taken_ = taken;
   result_.findings = findings;
   return_to(std::move(start));
+}
+
+bool Search::give_up_what_bends() {
+  if (!relation_ || log_likelihood_of(*run_) >= relation_->without) return false;
+  const auto is_it = [this](const Finding& f) { return f.hypothesis.effect == relation_->effect.get(); };
+  const auto found = std::ranges::find_if(result_.findings, is_it);
+  if (found == result_.findings.end()) return false;  // something that has a name took its place
+  give_up(static_cast<std::size_t>(found - result_.findings.begin()));
+  return true;
 }
 
 bool Search::form_is_confirmed(const Taken& form, const Finding& finding, double gain) {

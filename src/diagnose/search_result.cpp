@@ -14,7 +14,7 @@ Diagnosis Search::finish() {
   fold_residues();
   std::ranges::move(noise_findings(), std::back_inserter(result_.noise));
   std::ranges::move(random_effects_, std::back_inserter(result_.noise));
-  std::ranges::move(turned_on_, std::back_inserter(result_.noise));
+  std::ranges::transform(turned_on_, std::back_inserter(result_.noise), described_bias);
   join_entries_with_exits();
   join_quadratures();
   std::ranges::stable_sort(result_.findings, std::ranges::greater{}, &Finding::delta_log_likelihood);
@@ -23,17 +23,19 @@ Diagnosis Search::finish() {
   const auto epochs = static_cast<double>(run_->solution().forward.innovations.size());
   result_.outage_change = outage_difference(result_.before, result_.after);
   result_.innovations_after = run_->solution().forward.innovations;
-  result_.modelled = std::move(current_);
-  for (const TurnOn& one : beyond_stated(*run_)) {
-    widen(one, result_.modelled);
-    result_.after.log_likelihood_per_epoch += one.gain() / epochs;
-  }
+  result_.modelled = modelled();
+  for (const TurnOn& one : turned_on_) result_.after.log_likelihood_per_epoch += one.gain() / epochs;
   return std::move(result_);
 }
 
 void Search::look_at_start() {
-  turned_on_.clear();
-  for (const TurnOn& one : beyond_stated(*run_)) turned_on_.push_back(described(one));
+  turned_on_ = beyond_stated(*run_);
+}
+
+MissionInput Search::modelled() const {
+  MissionInput input = current_;
+  for (const TurnOn& one : turned_on_) widen(one, input);
+  return input;
 }
 
 std::vector<Alternative> Search::found() const {
@@ -41,12 +43,10 @@ std::vector<Alternative> Search::found() const {
   for (const Finding& f : result_.findings)
     all.push_back(
         {std::string(f.hypothesis.effect->name), std::string(name(f.hypothesis.effect->site)), f.hypothesis.axis_name(), 0.0});
-  const auto add = [&all](const std::vector<NoiseFinding>& noise) {
-    for (const NoiseFinding& f : noise) all.push_back({f.name, f.sensor, f.axis, 0.0});
-  };
-  add(noise_findings());
-  add(random_effects_);
-  add(turned_on_);
+  const auto add = [&all](const NoiseFinding& f) { all.push_back({f.name, f.sensor, f.axis, 0.0}); };
+  std::ranges::for_each(noise_findings(), add);
+  std::ranges::for_each(random_effects_, add);
+  std::ranges::for_each(turned_on_, add, described_bias);
   return all;
 }
 
@@ -67,8 +67,11 @@ void Search::tell_of(const Search& other, double log_odds) {
     std::ranges::sort(alternatives, {}, &Alternative::log_odds);
   };
   for (std::size_t i = 0; i < result_.findings.size(); ++i) add(ours[i], result_.findings[i].alternatives);
-  for (std::vector<NoiseFinding>* some : {&random_effects_, &turned_on_})
-    for (NoiseFinding& f : *some) add({f.name, f.sensor, f.axis, 0.0}, f.alternatives);
+  for (NoiseFinding& f : random_effects_) add({f.name, f.sensor, f.axis, 0.0}, f.alternatives);
+  for (TurnOn& one : turned_on_) {
+    const NoiseFinding f = described_bias(one);
+    add({f.name, f.sensor, f.axis, 0.0}, one.alternatives);
+  }
 }
 
 std::vector<NoiseFinding> Search::noise_findings() const {

@@ -103,7 +103,7 @@ void move_to_stated(const TurnOn& one, const MissionRun& run, Examination& exami
       prior_mean(one, run) * examination.information.col(run.hypotheses().bias_step(sensor_site(one.sensor), one.axis));
 }
 
-NoiseFinding described(const TurnOn& one) {
+NoiseFinding described_bias(const TurnOn& one) {
   const double ratio = one.value / one.stated;
   return {.name = "turn_on_bias",
           .sensor = std::string(name(sensor_site(one.sensor))),
@@ -118,7 +118,8 @@ NoiseFinding described(const TurnOn& one) {
           .meaning =
               fmt::format("The bias at the start is {:.2g} times the sigma that the error model has of it.", std::abs(ratio)),
           .equation = fmt::format("d_i = constant, sigma {:.3g}", one.stated),
-          .separating_manoeuvre = "The same IMU switched on again: what is a bias of that one start is another one then."};
+          .separating_manoeuvre = "The IMU switched on again: a bias of one start is another one then.",
+          .alternatives = one.alternatives};
 }
 
 void widen(const TurnOn& one, MissionInput& input) {

@@ -18,6 +18,7 @@ struct TurnOn {
   double value = 0.0;   ///< rad/s or m/s^2
   double sd = 0.0;      ///< as the run knows it
   double stated = 0.0;  ///< sd of the error model
+  std::vector<Alternative> alternatives = {};
   /// What the bias costs under the sd that would make it likeliest, its own size, against none under the stated one.
   [[nodiscard]] double price() const;
   /// In log-likelihood, by that sd.
@@ -31,7 +32,7 @@ struct TurnOn {
 [[nodiscard]] double gain_about_stated(const TurnOn& one, const MissionRun& run);
 void move_to_stated(const TurnOn& one, const MissionRun& run, Examination& examination);
 
-[[nodiscard]] NoiseFinding described(const TurnOn& one);
+[[nodiscard]] NoiseFinding described_bias(const TurnOn& one);
 /// A turn-on bias of this size, in the error model.
 void widen(const TurnOn& one, MissionInput& input);
 

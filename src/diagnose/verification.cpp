@@ -55,7 +55,7 @@ bool Verification::Effect::holds() const {
 }
 
 Verification verify(const Search& search) {
-  const Blocks blocks(search.modelled());
+  const Blocks blocks(search.input());
   std::vector<Taken> none;
   const std::vector<double> without = log_likelihoods(search.with_values(none), blocks);
   std::vector<double> with(blocks.count(), 0.0);
@@ -101,7 +101,7 @@ Verification verify(const Search& search) {
   h.gain_sd = count > 1.0 ? std::sqrt(std::max(0.0, squares - h.gain * h.gain / count) * count / (count - 1.0)) : 0.0;
   h.better /= count;
   const auto epochs = static_cast<double>(
-      std::ranges::count_if(search.modelled().gnss.fixes, [&](const record::GnssFix& fix) { return blocks.contains(fix.t); }));
+      std::ranges::count_if(search.input().gnss.fixes, [&](const record::GnssFix& fix) { return blocks.contains(fix.t); }));
   h.before_per_epoch = before / epochs;
   h.after_per_epoch = (before + h.gain) / epochs;
   return result;

@@ -14,6 +14,25 @@ struct MissionWithTruth {
   record::Trajectory truth;
 };
 
+/// Of every axis; units of data sheets.
+struct WhiteNoiseAndBias {
+  double gyro_deg_sqrt_h = 0.15, gyro_bias_deg_h = 20.0;
+  double accel_ug_sqrt_hz = 60.0, accel_bias_mg = 2.0;
+};
+inline noise::ImuErrorModel error_model(const WhiteNoiseAndBias& of) {
+  return noise::ImuErrorModel::from(
+      io::parse_yaml(fmt::format(R"(
+schema: coast.imu_error_model/1
+sensor: test
+gyro:
+  all: [{{process: white_noise, density: {}, unit: deg/sqrt(h)}}, {{process: random_constant, sigma: {}, unit: deg/h}}]
+accel:
+  all: [{{process: white_noise, density: {}, unit: ug/sqrt(Hz)}}, {{process: random_constant, sigma: {}, unit: mg}}]
+)",
+                                 of.gyro_deg_sqrt_h, of.gyro_bias_deg_h, of.accel_ug_sqrt_hz, of.accel_bias_mg),
+                     "model.yaml"));
+}
+
 /// A short drive with an industrial IMU that errs by its own model, GNSS at the antenna twice a second.
 inline MissionWithTruth honest_mission_with_truth(std::uint64_t seed, double duration_s = 300.0) {
   simulate::Scenario scenario = simulate::Scenario::from(io::parse_yaml(fmt::format(R"(
@@ -26,15 +45,7 @@ start_gps: {{week: 2374, sow: 208800}}
                                                                                     duration_s),
                                                                         "scenario.yaml"),
                                                          [](const std::filesystem::path& file) { return io::load_yaml(file); });
-  scenario.error_model = noise::ImuErrorModel::from(io::parse_yaml(R"(
-schema: coast.imu_error_model/1
-sensor: test
-gyro:
-  all: [{process: white_noise, density: 0.15, unit: deg/sqrt(h)}, {process: random_constant, sigma: 20, unit: deg/h}]
-accel:
-  all: [{process: white_noise, density: 60, unit: ug/sqrt(Hz)}, {process: random_constant, sigma: 2, unit: mg}]
-)",
-                                                                   "model.yaml"));
+  scenario.error_model = error_model({});
   scenario.seed = seed;
   simulate::SimulatedMission recorded = simulate::simulate(scenario);
   diagnose::MissionInput input{std::move(recorded.imu), std::move(recorded.gnss), {}};

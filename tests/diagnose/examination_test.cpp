@@ -6,7 +6,6 @@
 
 #include "coast/geo/earth.hpp"
 #include "coast/geo/units.hpp"
-#include "coast/io/yaml.hpp"
 #include "coast/noise/chi_square.hpp"
 #include "coast/study/interpolation.hpp"
 #include "coast/study/solution.hpp"
@@ -97,15 +96,8 @@ TEST(Examination, ScoresAreSlopesOfTheLogLikelihood) {
 // as a shift of the prior mean. A rate turns the antenna and the wheels about the IMU too.
 TEST(Examination, OfAConstantThatIsAStateTheInformationIsThatOfItsPrior) {
   MissionInput input = test::honest_mission(13);
-  input.setup.model = noise::ImuErrorModel::from(io::parse_yaml(R"(
-schema: coast.imu_error_model/1
-sensor: test
-gyro:
-  all: [{process: white_noise, density: 0.6, unit: deg/sqrt(h)}, {process: random_constant, sigma: 300, unit: deg/h}]
-accel:
-  all: [{process: white_noise, density: 200, unit: ug/sqrt(Hz)}, {process: random_constant, sigma: 10, unit: mg}]
-)",
-                                                                "model.yaml"));
+  input.setup.model =
+      test::error_model({.gyro_deg_sqrt_h = 0.6, .gyro_bias_deg_h = 300.0, .accel_ug_sqrt_hz = 200.0, .accel_bias_mg = 10.0});
   input.setup.filter.vehicle.non_holonomic = estimate::NonHolonomic{.point_b = {-1.5, 0.4, 0.8}, .pitch = 0.02, .yaw = -0.03};
   input.setup.start = study::PreparedMission(input.imu, input.gnss, input.setup, {}).start();
   input.setup.start->gyro_bias_sd.reset();  // seen standing still they are known better

@@ -143,7 +143,7 @@ struct Diagnosis {
 
 struct DiagnosisOptions {
   double false_alarm_probability = 0.05;  ///< of a recording in which nothing is missing
-  int most_effects = 6;                   ///< mean effects; one more for each that is exchanged for one from the start on
+  int most_effects = 6;                   ///< mean effects; one more for each exchange for one from the start on, or of a bias
   std::uint64_t seed = 1;
   int twins = 20;  ///< of each model; 0: none
   /// `gnss.time_offset_s` by which turns of GNSS and IMU match best (io::inspect). Where it is far from the configured one, the
