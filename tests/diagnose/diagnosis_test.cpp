@@ -80,6 +80,7 @@ TEST(Diagnosis, ATimeOffsetIsNotAGapWhereWrongFixesEnd) {
   ASSERT_NE(offset, d.findings.end()) << names(d);
   EXPECT_NEAR(offset->value, -kOffset, 4.0 * offset->sd);
   for (const Finding& f : d.findings) EXPECT_NE(f.hypothesis.effect->name, "imu_timestamp_gap") << names(d);
+  EXPECT_LT(d.runs, 300U);  // 149; several times as many where a relation that bends its own trajectory is kept
 }
 
 // By hand: differences 3, 1, 2: mean 2, sd of the mean 1 / sqrt(3).
