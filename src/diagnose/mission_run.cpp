@@ -43,7 +43,7 @@ Fit MissionRun::fit() const {
   const auto count = static_cast<double>(solution_.forward.innovations.size());
   if (dof > 0.0) fit.nis = nis / dof;
   double of_biases = 0.0;  // the run began about those that it found
-  for (const TurnOn& one : beyond_stated(*this)) of_biases -= 0.5 * std::pow(one.value / one.stated, 2);
+  for (const TurnOn& one : beyond_stated(*this)) of_biases -= one.cost();
   if (count > 0.0) fit.log_likelihood_per_epoch = (log_likelihood() + of_biases) / count;
   const std::vector<study::Outage> outages =
       study::outages_of(sweep, mission_.start().nav.t, mission_.mission().imu.samples.back().t);

@@ -43,6 +43,10 @@ class MissionRun {
   Hypotheses hypotheses_;
 };
 
+[[nodiscard]] inline std::string axis_letter(int axis) {
+  return {static_cast<char>('x' + axis)};
+}
+
 /// Log-likelihood of what predicts nothing because the filter breaks down with it: finite, so that differences are numbers.
 inline constexpr double kBroken = -1e6;
 

@@ -55,6 +55,18 @@ Search::Search(const MissionInput& input, const DiagnosisOptions& options, Order
 }
 
 bool Search::step() {
+  const std::weak_ptr<const MissionRun> run = run_;
+  const std::vector<Taken> of_run = taken_;
+  const bool goes_on = look_further();
+  if (run_ == run.lock()) {
+    taken_ = of_run;  // what moved since belongs to no run
+  } else if (sensors_are_elsewhere(*run_)) {
+    run_again();  // or something else would have to explain the rest of what was taken for errors of the sensors
+  }
+  return goes_on;
+}
+
+bool Search::look_further() {
   if (give_up_what_bends()) return true;
   Examination examination = examined({}, 0);
   const std::vector<Taken> before = taken_;
@@ -95,7 +107,8 @@ double Search::evidence() const {
   double prices = parameters + log_choices() * static_cast<double>(taken_.size());
   for (const Finding& f : result_.findings) prices += f.price;
   for (const NoiseFinding& f : random_effects_) prices += price_of_random_effect(f.sd / f.value);
-  for (const TurnOn& one : beyond_stated(*run_)) prices += one.price();
+  // One that is shared and beyond the error model all the same has paid what an error model with a larger sigma would not ask.
+  for (const TurnOn& one : beyond_stated(*run_)) prices += is_shared(one) ? -one.gain() : one.price();
   return log_likelihood_of(*run_) + forgotten_ - prices;
 }
 
@@ -156,8 +169,13 @@ void Search::share(const TurnOn& bias) {
   shared_.push_back(bias);
   // Soon after the start a step is the same.
   exchanged_.push_back(run_->hypotheses().bias_step(sensor_site(bias.sensor), bias.axis));
+  relation_.reset();
   run_again();
   forgotten_ += before - run_->log_likelihood();
+}
+
+bool Search::is_shared(const TurnOn& bias) const {
+  return std::ranges::any_of(shared_, [&](const TurnOn& b) { return b.sensor == bias.sensor && b.axis == bias.axis; });
 }
 
 double Search::log_likelihood_of(const MissionRun& run) const {
@@ -188,13 +206,14 @@ double Search::likelihood_from(const MissionRun& last) {
 bool Search::run_moved(const std::vector<Taken>& before) {
   constexpr int kHalvings = 3;
   constexpr double kLess = 3.0;  // that a run may be for the other point about which it is linearised
-  Standing start = leave();
-  for (int i = 0; i <= kHalvings; ++i) {
+  Standing start = standing();
+  for (int i = 0; i <= kHalvings && start.run != stuck_.lock(); ++i) {
     if (likelihood_from(*start.run) > log_likelihood_of(*start.run) - kLess) return true;
     for (std::size_t k = 0; k < taken_.size(); ++k) taken_[k].value = 0.5 * (taken_[k].value + before[k].value);
   }
   taken_ = before;
   return_to(std::move(start));
+  stuck_ = run_;
   return false;
 }
 
@@ -202,7 +221,11 @@ void Search::settle() {
   constexpr int kMost = 8;
   for (int i = 0; i < kMost; ++i) {
     const std::vector<Taken> before = taken_;
-    if (follow(examined({}, 0)) < kNear || !run_moved(before)) return;
+    if (follow(examined({}, 0)) < kNear) {
+      taken_ = before;
+      return;
+    }
+    if (!run_moved(before)) return;
   }
 }
 
@@ -235,6 +258,7 @@ void Search::give_up(std::size_t index) {
 }
 
 void Search::take_out(std::size_t index) {
+  relation_.reset();
   taken_.erase(taken_.begin() + static_cast<std::ptrdiff_t>(index));
   result_.findings.erase(result_.findings.begin() + static_cast<std::ptrdiff_t>(index));
   run_again();
@@ -267,6 +291,7 @@ void Search::run_current() {
 void Search::return_to(Standing&& standing) {
   run_ = std::move(standing.run);
   current_ = std::move(standing.input);
+  sensors_at_start_ = std::move(standing.sensors);
 }
 
 std::vector<Eigen::Index> rows_of(const std::vector<Taken>& taken, Eigen::Index hypotheses) {

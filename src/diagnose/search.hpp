@@ -54,7 +54,7 @@ class Search {
  public:
   Search(const MissionInput& input, const DiagnosisOptions& options, Order order, const study::Progress& progress);
 
-  /// @return  whether something was done that may show more
+  /// What was taken has the values of the last run behind it. @return  whether something was done that may show more
   bool step();
   Diagnosis finish();
 
@@ -111,6 +111,7 @@ class Search {
  private:
   using RunPtr = std::shared_ptr<const MissionRun>;
 
+  bool look_further();
   [[nodiscard]] double of_catalogue() const;
   /// What draws say beside an examination that had none: those of an earlier run, where they still hold.
   void add_draws(Examination& examination);
@@ -128,12 +129,21 @@ class Search {
   /// may be too long, or, where nothing is linear, wrong. @return  whether they moved at all
   bool run_moved(const std::vector<Taken>& before);
   void run_current();
+  /// The filter is linearised about what a run found of the sensors: with biases at their prior mean, tilts are wrong by mrad
+  /// until the first manoeuvres, and the square of a tilt looks like a vertical bias that ends there. Not of every run: a prior
+  /// that follows each is one more thing that fits, by steps that end nowhere, and runs are compared by their likelihoods. The
+  /// first run stands until what it took for errors of the sensors has another explanation.
+  struct SensorsAtStart {
+    estimate::StateLayout layout;
+    Eigen::VectorXd x;
+  };
   /// A run, to which a trial that was in vain returns: made again it would be another one, along another trajectory.
   struct Standing {
     RunPtr run;
     MissionInput input;
+    std::optional<SensorsAtStart> sensors;
   };
-  [[nodiscard]] Standing leave() { return {std::move(run_), current_}; }
+  [[nodiscard]] Standing standing() const { return {run_, current_, sensors_at_start_}; }
   void return_to(Standing&& standing);
   /// Whether a run found errors of the sensors far from those about which it was linearised.
   [[nodiscard]] bool sensors_are_elsewhere(const MissionRun& last) const;
@@ -141,6 +151,7 @@ class Search {
   void find_sensors_anew();
   /// From now on the bias is what the error model has of it: another effect has the rest of the constant.
   void share(const TurnOn& bias);
+  [[nodiscard]] bool is_shared(const TurnOn& bias) const;
   /// About the means that the error model has of biases that are shared.
   [[nodiscard]] double log_likelihood_of(const MissionRun& run) const;
   void model_noise(MissionInput& input) const;
@@ -227,8 +238,8 @@ class Search {
   [[nodiscard]] std::vector<Alternative> found() const;
   /// Of the noise that is stated, what the configuration does not want estimated anyway.
   [[nodiscard]] std::vector<NoiseFinding> noise_findings() const;
-  /// A relation whose signals are those of an effect of the catalogue, which was not looked for because its size is
-  /// implausible, has a name after all.
+  /// A relation whose signals are those of an effect of the catalogue, which was not taken because its size is implausible, has
+  /// a name after all.
   void name_relations();
   /// An effect that is taken back later by an equal jump the other way lasted until then: a wrong fix.
   void join_entries_with_exits();
@@ -245,18 +256,11 @@ class Search {
   Grade grade_;
   std::optional<estimate::NoiseFitChoice> asked_for_;  ///< noise that the run estimates
   MissionInput current_;
-  /// The filter is linearised about what a run found of the sensors: with biases at their prior mean, tilts are wrong by mrad
-  /// until the first manoeuvres, and the square of a tilt looks like a vertical bias that ends there. Not of every run: a prior
-  /// that follows each is one more thing that fits, by steps that end nowhere, and runs are compared by their likelihoods. The
-  /// first run stands until what it took for errors of the sensors has another explanation.
-  struct SensorsAtStart {
-    estimate::StateLayout layout;
-    Eigen::VectorXd x;
-  };
   std::optional<SensorsAtStart> sensors_at_start_;
   std::vector<TurnOn> shared_;
   double forgotten_ = 0.0;  ///< log-likelihood that the standstill was worth
   RunPtr run_;
+  std::weak_ptr<const MissionRun> stuck_;  ///< from where no movement was likelier
   std::vector<Taken> taken_;
   std::vector<Eigen::Index> refused_;    ///< until another is taken
   std::vector<Eigen::Index> given_up_;   ///< for good
@@ -275,7 +279,7 @@ class Search {
     EffectPtr effect;
     double without = 0.0;  ///< log-likelihood, before it was taken
   };
-  std::optional<Relation> relation_;  ///< the last one, as long as nothing was given up since
+  std::optional<Relation> relation_;  ///< the last one, as long as nothing was taken out since
   std::vector<AddedNoise> added_;
   std::vector<AddedNoise> refused_noise_;
   std::vector<FittedEffect> beaten_;  ///< random effects that explain less than a mean effect does
@@ -293,9 +297,6 @@ class Search {
 /// @param log_sd  of the root of its variance
 [[nodiscard]] double price_of_random_effect(double log_sd);
 [[nodiscard]] double evidence_of(const FittedEffect& fit);
-[[nodiscard]] inline std::string axis_letter(int axis) {
-  return {static_cast<char>('x' + axis)};
-}
 
 inline constexpr double kNothing = 2.0;  // sd, below which a size is nothing beside the others
 inline constexpr double kLogOdds = 7.0;  // of alternatives that are told: a thousandth as likely

@@ -51,7 +51,7 @@ void Search::run_without(Candidate& candidate) {
   const double before = log_likelihood_of(*run_);
   const double choice = log_choices();
   const std::vector<Taken> taken = taken_;
-  Standing start = leave();
+  Standing start = standing();
   taken_.push_back({s.hypothesis, s.from, {}, s.estimate});
   double best = likelihood_from(*start.run);
   if (run_ != nullptr) {
@@ -90,7 +90,7 @@ bool Search::makes_likelier(const Suspicion& s) {
   const double before = log_likelihood_of(*run_);
   const std::vector<Taken> others = taken_;
   take(s);
-  Standing start = leave();
+  Standing start = standing();
   const auto gains_enough = [&](const MissionRun& last) {
     result_.findings.back().delta_log_likelihood = likelihood_from(last) - before;
     return result_.findings.back().delta_log_likelihood >= 0.5 * result_.threshold;
@@ -199,6 +199,7 @@ bool Search::put_lasting_in_place_of(std::size_t index) {
   const Hypothesis begins = run_->hypotheses()[one.hypothesis];
   take_out(index);
   candidates_ = {};
+  refused_.clear();
   exchanged_.push_back(one.hypothesis);
   ++options_.most_effects;
   noise_is_behind_ = true;
@@ -225,9 +226,10 @@ bool Search::put_lasting_in_place_of(std::size_t index) {
 
 bool Search::put_constant_in_place_of_bias(std::size_t index) {
   const TurnOn bias = turned_on_[index];
+  refused_.clear();  // beside the bias that has all of it
   const std::optional<Suspicion> constant = constant_like(bias, *run_);
   const auto is_taken = [&](const Taken& one) { return one.hypothesis == constant->hypothesis; };
-  if (!constant || was_refused(*constant) || std::ranges::any_of(taken_, is_taken)) return false;
+  if (!constant || is_shared(bias) || was_refused(*constant) || std::ranges::any_of(taken_, is_taken)) return false;
   candidates_ = {};
   ++options_.most_effects;
   noise_is_behind_ = true;

@@ -65,7 +65,7 @@ void Search::try_out(const Proposal& form) {
   const std::vector<Taken> taken = taken_;
   const std::vector<Finding> findings = result_.findings;
   suggested_.push_back(form.effect->relation.empty() ? refined(form.effect) : form.effect);
-  Standing start = leave();
+  Standing start = standing();
   run_from(*start.run);
   const auto first = static_cast<Eigen::Index>(run_->hypotheses().size()) - static_cast<Eigen::Index>(form.effect->axes.size());
   for (Eigen::Index i = first; i < run_->hypotheses().size(); ++i)

@@ -110,11 +110,12 @@ bool Search::fit_noise_again() {
   if (!noise_) return was_tried;
   const double before = log_likelihood_of(*run_);
   const FittedNoise last = *std::exchange(noise_, std::nullopt);
+  Standing start = standing();
   run_again();
   fit_noise();
   if (log_likelihood_of(*run_) > before) return true;
   noise_ = last;  // a part of a long mission is not all of it
-  run_again();
+  return_to(std::move(start));
   return false;
 }
 

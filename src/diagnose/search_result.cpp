@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "search.hpp"
 
@@ -24,12 +25,17 @@ Diagnosis Search::finish() {
   result_.outage_change = outage_difference(result_.before, result_.after);
   result_.innovations_after = run_->solution().forward.innovations;
   result_.modelled = modelled();
-  for (const TurnOn& one : turned_on_) result_.after.log_likelihood_per_epoch += one.gain() / epochs;
+  double of_biases = forgotten_;
+  for (const TurnOn& one : turned_on_) of_biases += one.gain();
+  result_.after.log_likelihood_per_epoch += of_biases / epochs;
   return std::move(result_);
 }
 
 void Search::look_at_start() {
-  turned_on_ = beyond_stated(*run_);
+  std::vector<TurnOn> told = std::exchange(turned_on_, beyond_stated(*run_));
+  for (TurnOn& one : turned_on_)
+    for (TurnOn& before : told)
+      if (before.sensor == one.sensor && before.axis == one.axis) one.alternatives = std::move(before.alternatives);
 }
 
 MissionInput Search::modelled() const {

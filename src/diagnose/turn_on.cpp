@@ -72,8 +72,12 @@ double TurnOn::price() const {
   return 0.5 + std::log(std::abs(value) / stated);
 }
 
+double TurnOn::cost() const {
+  return 0.5 * std::pow(value / stated, 2);
+}
+
 double TurnOn::gain() const {
-  return 0.5 * std::pow(value / stated, 2) - price();
+  return cost() - price();
 }
 
 std::vector<TurnOn> beyond_stated(const MissionRun& run) {
@@ -104,20 +108,21 @@ void move_to_stated(const TurnOn& one, const MissionRun& run, Examination& exami
 }
 
 NoiseFinding described_bias(const TurnOn& one) {
-  const double ratio = one.value / one.stated;
+  const double ratio = std::abs(one.value / one.stated);
   return {.name = "turn_on_bias",
           .sensor = std::string(name(sensor_site(one.sensor))),
-          .axis = std::string(1, static_cast<char>('x' + one.axis)),
+          .axis = axis_letter(one.axis),
           .parameter = "bias",
-          .unit = one.sensor == noise::Sensor::kGyro ? "rad/s" : "m/s^2",
+          .unit = std::string(signal_unit(sensor_site(one.sensor))),
           .value = one.value,
           .sd = one.sd,
           .delta_log_likelihood = one.gain(),
           .p_value = std::min(1.0, kAxes * noise::chi2_survival(1.0, ratio * ratio)),
           .place = NoiseFinding::Place::kErrorModel,
           .meaning =
-              fmt::format("The bias at the start is {:.2g} times the sigma that the error model has of it.", std::abs(ratio)),
-          .equation = fmt::format("d_i = constant, sigma {:.3g}", one.stated),
+              fmt::format("The bias at the start is {:.{}f} times the sigma that the error model has of it, {:.3g}.", ratio,
+                          ratio < 10.0 ? 1 : 0, one.stated),
+          .equation = "d_i = constant, beyond the error model's sigma",
           .separating_manoeuvre = "The IMU switched on again: a bias of one start is another one then.",
           .alternatives = one.alternatives};
 }
@@ -125,7 +130,7 @@ NoiseFinding described_bias(const TurnOn& one) {
 void widen(const TurnOn& one, MissionInput& input) {
   append({noise::make_gauss_markov({.name = "random_constant",
                                     .sigma = std::abs(one.value),
-                                    .unit = one.sensor == noise::Sensor::kGyro ? "rad/s" : "m/s^2"})},
+                                    .unit = signal_unit(sensor_site(one.sensor))})},
          one.sensor, one.axis, input);
 }
 

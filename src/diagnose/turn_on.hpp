@@ -19,9 +19,11 @@ struct TurnOn {
   double sd = 0.0;      ///< as the run knows it
   double stated = 0.0;  ///< sd of the error model
   std::vector<Alternative> alternatives = {};
-  /// What the bias costs under the sd that would make it likeliest, its own size, against none under the stated one.
+  /// What the bias costs in log-likelihood under the stated sd, against none.
+  [[nodiscard]] double cost() const;
+  /// Likewise under the sd that would make it likeliest, its own size.
   [[nodiscard]] double price() const;
-  /// In log-likelihood, by that sd.
+  /// By that sd.
   [[nodiscard]] double gain() const;
 };
 /// Such as less than one in ten thousand missions has of which the error model holds.

@@ -71,7 +71,7 @@ struct NoiseFinding {
 
 /// Fit of one run.
 struct Fit {
-  double log_likelihood_per_epoch = 0.0;
+  double log_likelihood_per_epoch = 0.0;  ///< with what biases at the start cost beyond the error model
   double nis = 0.0;                    ///< mean over degrees of freedom
   double outage_rms_m = 0.0;           ///< horizontal maxima of forward outages, against the run's own smoothed trajectory
   std::vector<double> outages_m = {};  ///< one by one
@@ -159,8 +159,10 @@ struct DiagnosisOptions {
 /// search is made once more with mean effects first; the outcome with the larger evidence is kept and the other one told beside
 /// it where the difference is small. Every effect is put to the test again beside the others. Then what was found is held
 /// against blocks that its sizes were not estimated from, and given up where it explains nothing there; likewise, the worst
-/// first, where with all of it artificial outages drift farther than with nothing; and the recording against twins of its
-/// mission (twin.hpp) by the configured model and by the new one.
+/// first, where with all of it artificial outages drift farther than with nothing. What begins at some time is then put to the
+/// test as there from the start on, and a bias at the start that the error model does not have as an effect that is a constant
+/// during the mission, each with all of the search behind it. In the end the recording is held against twins of its mission
+/// (twin.hpp) by the configured model and by the new one.
 /// @param simulations  the user's own, in place of the twins of the configured model
 [[nodiscard]] Diagnosis diagnose(const MissionInput& input, const DiagnosisOptions& options, const study::Progress& progress,
                                  const std::vector<MissionInput>& simulations = {});

@@ -83,8 +83,8 @@ struct LargestByChance {
 
 struct Suspicions {
   std::vector<Suspicion> all;  ///< by hypothesis; what cannot be seen at all is left out
-  /// Of which the mission shows nothing that is plausible: they are not looked for while anything else explains it, but what is
-  /// found may look like them.
+  /// Of which the mission shows nothing that is plausible: they are not looked for while one that is plausible explains it, but
+  /// what is found may look like them.
   std::vector<Suspicion> implausible;
   LargestByChance chance;
   /// Of either; null where the mission cannot tell it from what is taken.
