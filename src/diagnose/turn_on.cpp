@@ -119,18 +119,16 @@ NoiseFinding described_bias(const TurnOn& one) {
           .delta_log_likelihood = one.gain(),
           .p_value = std::min(1.0, kAxes * noise::chi2_survival(1.0, ratio * ratio)),
           .place = NoiseFinding::Place::kErrorModel,
-          .meaning =
-              fmt::format("The bias at the start is {:.{}f} times the sigma that the error model has of it, {:.3g}.", ratio,
-                          ratio < 10.0 ? 1 : 0, one.stated),
+          .meaning = fmt::format("The bias at the start is {:.{}f} times the sigma that the error model has of it, {:.3g}.",
+                                 ratio, ratio < 10.0 ? 1 : 0, one.stated),
           .equation = "d_i = constant, beyond the error model's sigma",
           .separating_manoeuvre = "The IMU switched on again: a bias of one start is another one then.",
           .alternatives = one.alternatives};
 }
 
 void widen(const TurnOn& one, MissionInput& input) {
-  append({noise::make_gauss_markov({.name = "random_constant",
-                                    .sigma = std::abs(one.value),
-                                    .unit = signal_unit(sensor_site(one.sensor))})},
+  append({noise::make_gauss_markov(
+             {.name = "random_constant", .sigma = std::abs(one.value), .unit = signal_unit(sensor_site(one.sensor))})},
          one.sensor, one.axis, input);
 }
 

@@ -72,9 +72,9 @@ struct NoiseFinding {
 /// Fit of one run.
 struct Fit {
   double log_likelihood_per_epoch = 0.0;  ///< with what biases at the start cost beyond the error model
-  double nis = 0.0;                    ///< mean over degrees of freedom
-  double outage_rms_m = 0.0;           ///< horizontal maxima of forward outages, against the run's own smoothed trajectory
-  std::vector<double> outages_m = {};  ///< one by one
+  double nis = 0.0;                       ///< mean over degrees of freedom
+  double outage_rms_m = 0.0;              ///< horizontal maxima of forward outages, against the run's own smoothed trajectory
+  std::vector<double> outages_m = {};     ///< one by one
 };
 
 /// A part of a mission, in seconds since its start.
