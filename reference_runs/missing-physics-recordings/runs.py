@@ -78,7 +78,7 @@ def one(name, make, out):
                         "held_out": e.get("held_out_gain")}
     v = d["verification"]
     return {"effects": effects, "nis": v["nis"], "log_likelihood_per_epoch": v["log_likelihood_per_epoch"], "outage_rms_m": v["outage_rms_m"],
-            "rejected": v["rejected"]}
+            "rejected": [r["effect"] for r in v["rejected"]]}
 
 
 COAST, CONCEAL, OUT = sys.argv[1:4]

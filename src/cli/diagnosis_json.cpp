@@ -115,6 +115,16 @@ std::string why_not_accepted(const diagnose::Diagnosis& d) {
   return {};
 }
 
+std::string_view why_rejected(diagnose::Rejected::Reason reason) {
+  switch (reason) {
+    case diagnose::Rejected::Reason::kHeldOut:
+      return "its size from one half of the mission does not explain the other half";
+    case diagnose::Rejected::Reason::kOutages:
+      return "artificial outages drift farther with it";
+  }
+  return {};
+}
+
 bool SimulationCheck::has(const diagnose::Finding& finding) const {
   constexpr double kEqual = 4.0;  // sd of the difference
   const diagnose::Effect& effect = *finding.hypothesis.effect;
@@ -166,7 +176,9 @@ Json verification_json(const diagnose::Diagnosis& d) {
                      {"better", d.held_out->better}};
   }
   if (!d.twins_after.empty()) j["twins"] = twins_json(d.twins_after);
-  j["rejected"] = d.rejected;
+  j["rejected"] = Json::array();
+  for (const diagnose::Rejected& one : d.rejected)
+    j["rejected"].push_back({{"effect", one.effect}, {"reason", why_rejected(one.reason)}});
   j["accepted"] = why_not_accepted(d).empty();
   return j;
 }

@@ -3,6 +3,7 @@
 
 #include <optional>
 #include <string>
+#include <string_view>
 
 #include "coast/diagnose/diagnosis.hpp"
 #include "coast/report/page.hpp"
@@ -29,6 +30,8 @@ struct SimulationCheck {
 /// Why all that was found is no better than nothing: the recording is no likelier with it, or outages drift farther. Empty
 /// where it is better, and where nothing was found.
 [[nodiscard]] std::string why_not_accepted(const diagnose::Diagnosis& diagnosis);
+/// Why an effect that was found is not among the findings.
+[[nodiscard]] std::string_view why_rejected(diagnose::Rejected::Reason reason);
 /// Whether an error model with what was found differs from the configured one.
 [[nodiscard]] bool changes_error_model(const diagnose::Diagnosis& diagnosis);
 [[nodiscard]] report::Page diagnosis_page(const std::string& title, const diagnose::Diagnosis& diagnosis,

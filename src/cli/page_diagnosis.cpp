@@ -136,12 +136,9 @@ report::Section fit_section(const Diagnosis& d) {
                      d.held_out->gain, d.held_out->gain_sd, 100.0 * d.held_out->better, d.held_out->blocks)});
   if (const std::string why = why_not_accepted(d); !why.empty())
     section.notes.push_back({report::Note::Kind::kWarning, "Not accepted", why});
-  for (const std::string& name : d.rejected)
+  for (const diagnose::Rejected& one : d.rejected)
     section.notes.push_back(
-        {report::Note::Kind::kWarning, "Given up",
-         fmt::format("{}: its size from one half of the mission makes the other half less likely, or outages "
-                     "drift farther with it.",
-                     name)});
+        {report::Note::Kind::kWarning, "Given up", fmt::format("{}: {}.", one.effect, why_rejected(one.reason))});
   return section;
 }
 

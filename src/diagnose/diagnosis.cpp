@@ -21,7 +21,7 @@ namespace {
 /// A search, and what was given up on the way.
 struct Searched {
   std::unique_ptr<Search> search;
-  std::vector<std::string> rejected = {};
+  std::vector<Rejected> rejected = {};
   std::optional<HeldOut> held_out = {};
 };
 
@@ -34,10 +34,10 @@ void step_to_the_end(Search& search) {
   }
 }
 
-void give_up(Searched& searched, std::size_t index) {
+void give_up(Searched& searched, std::size_t index, Rejected::Reason reason) {
   Search& search = *searched.search;
   const Hypothesis& h = search.run().hypotheses()[search.taken()[index].hypothesis];
-  searched.rejected.push_back(std::string(h.effect->name) + (h.axis_name().empty() ? "" : " " + h.axis_name()));
+  searched.rejected.push_back({std::string(h.effect->name) + (h.axis_name().empty() ? "" : " " + h.axis_name()), reason});
   search.give_up(index);
   searched.held_out.reset();
 }
@@ -46,7 +46,7 @@ void give_up(Searched& searched, std::size_t index) {
 bool heed_outages(Searched& searched) {
   bool gave_up = false;
   while (const std::optional<std::size_t> worst = what_spoils_outages(*searched.search)) {
-    give_up(searched, *worst);
+    give_up(searched, *worst, Rejected::Reason::kOutages);
     gave_up = true;
   }
   return gave_up;
@@ -66,7 +66,7 @@ bool hold_out(Searched& searched) {
     }
     const auto worst = std::ranges::min_element(
         effects, [](const auto& a, const auto& b) { return std::pair(a.holds(), a.gain) < std::pair(b.holds(), b.gain); });
-    give_up(searched, static_cast<std::size_t>(worst - effects.begin()));
+    give_up(searched, static_cast<std::size_t>(worst - effects.begin()), Rejected::Reason::kHeldOut);
     gave_up = true;
   }
   return gave_up;

@@ -9,6 +9,7 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
+#include "diagnosis_json.hpp"
 #include "program.hpp"
 #include "support/schema.hpp"
 #include "support/support.hpp"
@@ -131,6 +132,23 @@ TEST(DiagnoseCommand, TakesNoSimulationThatIsNotThere) {
                               folder.path());
   EXPECT_EQ(outcome.status, 2) << outcome.error;
   EXPECT_NE(outcome.error.find("none.yaml"), std::string::npos) << outcome.error;
+}
+
+TEST(DiagnosisJson, SaysWhyAnEffectWasGivenUp) {
+  diagnose::Diagnosis diagnosis;
+  diagnosis.runs = 1;
+  diagnosis.rejected = {{"harmonic_disturbance y", diagnose::Rejected::Reason::kHeldOut},
+                        {"bias_step x", diagnose::Rejected::Reason::kOutages}};
+  diagnose::MissionInput input;
+  input.imu.samples.resize(2);
+  const auto written = nlohmann::json::parse(diagnosis_json(diagnosis, input, {}));
+  test::expect_valid("diagnosis", written);
+  const nlohmann::json& rejected = written.at("verification").at("rejected");
+  ASSERT_EQ(rejected.size(), 2U);
+  EXPECT_EQ(rejected[0].at("effect"), "harmonic_disturbance y");
+  EXPECT_NE(rejected[0].at("reason").get<std::string>().find("half"), std::string::npos);
+  EXPECT_EQ(rejected[1].at("effect"), "bias_step x");
+  EXPECT_NE(rejected[1].at("reason").get<std::string>().find("outages"), std::string::npos);
 }
 
 struct SpoiledEffect {

@@ -112,6 +112,16 @@ struct PairedDifference {
 /// Whether outages drift farther with `after`: by half, and by more than chance has it of their differences (1 %).
 [[nodiscard]] bool drifts_farther(const Fit& before, const Fit& after);
 
+/// An effect that was found, and given up.
+struct Rejected {
+  enum class Reason {
+    kHeldOut,  ///< its size from one half of the mission does not explain the other half
+    kOutages,  ///< artificial outages drift farther with it
+  };
+  std::string effect;  ///< its name and axis
+  Reason reason = Reason::kHeldOut;
+};
+
 /// A trajectory that is known otherwise. It serves for what nothing in the recording can show: an offset of the base.
 struct Reference {
   const record::Trajectory* trajectory = nullptr;
@@ -133,7 +143,7 @@ struct Diagnosis {
   std::vector<TwinStatistic> twins_after;  ///< of the model with what was found
   std::optional<HeldOut> held_out;         ///< where mean effects were found
   bool reference_used = false;
-  std::vector<std::string> rejected;  ///< found, and given up: worse on held-out blocks, or in outages
+  std::vector<Rejected> rejected;
   std::size_t runs = 0;
   std::vector<estimate::InnovationRecord> innovations_before;
   std::vector<estimate::InnovationRecord> innovations_after;
