@@ -1,5 +1,8 @@
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <cmath>
+
 #include "coast/diagnose/diagnosis.hpp"
 #include "coast/io/writers.hpp"
 #include "coast/io/yaml.hpp"
@@ -54,6 +57,28 @@ std::vector<diagnose::MissionInput> simulated_inputs(const std::filesystem::path
   return {recorded_input(file, config, recordings)};
 }
 
+/// Why figures of a simulation say little of the recording: it is of another drive. Empty where it is of the same.
+std::string of_another_drive(const diagnose::MissionInput& recording, const diagnose::MissionInput& simulation) {
+  constexpr double kSameSpan = 0.05;    // of the recording's
+  constexpr double kSamePlace = 100.0;  // m
+  const std::vector<record::GnssFix>& real = recording.gnss.fixes;
+  const std::vector<record::GnssFix>& other = simulation.gnss.fixes;
+  if (real.empty() || other.empty()) return {};
+  const double span = real.back().t - real.front().t;
+  const double its_span = other.back().t - other.front().t;
+  if (std::abs(its_span - span) > kSameSpan * span)
+    return fmt::format("it takes {:.0f} s, the recording {:.0f} s; what differs may be the drive", its_span, span);
+  double farthest = 0.0;
+  std::size_t k = 0;
+  for (const record::GnssFix& fix : real) {
+    while (k + 1 < other.size() && other[k].t - other.front().t < fix.t - real.front().t) ++k;
+    farthest = std::max(farthest, (other[k].r_ea_e - fix.r_ea_e).norm());
+  }
+  if (farthest < kSamePlace) return {};
+  return fmt::format("it is up to {:.0f} m from the recording at the same time since the start; what differs may be the drive",
+                     farthest);
+}
+
 }  // namespace
 
 void diagnose(const std::filesystem::path& run_yaml, const DiagnoseOptions& choice, const CommonOptions& options) {
@@ -68,21 +93,30 @@ void diagnose(const std::filesystem::path& run_yaml, const DiagnoseOptions& choi
   const std::vector<diagnose::MissionInput> simulations = simulated_inputs(choice.simulation, input.setup, choice.twins);
   std::optional<SimulationCheck> simulation;
   if (!simulations.empty())
-    simulation = SimulationCheck{choice.simulation.string(), diagnose::diagnose(simulations.front(), {.twins = 0}, progress)};
+    simulation = SimulationCheck{choice.simulation.string(), diagnose::diagnose(simulations.front(), {.twins = 0}, progress),
+                                 of_another_drive(input, simulations.front())};
+  line.clear();
+  if (simulation && !simulation->of_another_drive.empty())
+    fmt::print(stderr, "warning: {}: {}\n", simulation->source, simulation->of_another_drive);
   diagnose::DiagnosisOptions search{.twins = choice.twins};
   if (const std::optional<double> shift = recordings.time_shift_s) search.time_offset_s = -*shift;
   if (recordings.reference) search.reference = {&*recordings.reference, config.reference_lever_arm_b};
   const diagnose::Diagnosis diagnosis = diagnose::diagnose(input, search, progress, simulations);
   line.clear();
-  const std::filesystem::path error_model = std::filesystem::absolute(out / "error_model.diagnosed.yaml");
-  const std::string diagnosed = diagnosed_yaml(config.root.resolved_yaml(), diagnosis, error_model.string());
-  if (changes_error_model(diagnosis)) io::write_text(error_model, diagnosis.modelled.setup.model.yaml());
+  const std::string error_model = "error_model.diagnosed.yaml";  // beside the run, so that both can be moved
+  const std::string diagnosed = diagnosed_yaml(config.root.resolved_yaml(), diagnosis, error_model);
+  if (changes_error_model(diagnosis))
+    io::write_text(out / error_model, diagnosis.modelled.setup.model.yaml());
+  else
+    std::filesystem::remove(out / error_model);  // of a former diagnosis
   io::write_text(out / "diagnosis.json", diagnosis_json(diagnosis, input, simulation));
   io::write_text(out / "run.diagnosed.yaml", diagnosed);
   const report::Page page = diagnosis_page(run_yaml.filename().string(), diagnosis, diagnosed, simulation);
   io::write_text(out / "report.json", report::to_json(page));
   io::write_text(out / "report.html", report::render(page));
-  if (!options.quiet) fmt::print("{}report: {}\n", diagnosis_text(diagnosis, simulation), (out / "report.html").string());
+  if (!options.quiet)
+    fmt::print("{}the run with it: {}\nreport: {}\n", diagnosis_text(diagnosis, simulation),
+               (out / "run.diagnosed.yaml").string(), (out / "report.html").string());
 }
 
 }  // namespace coast::cli

@@ -17,10 +17,6 @@ Json hypothesis_json(const Hypothesis& h) {
   return {{"name", h.effect->name}, {"sensor", diagnose::name(h.effect->site)}, {"axis", h.axis_name()}};
 }
 
-std::string full_name(const Hypothesis& h) {
-  return fmt::format("{}{}{}", h.effect->name, h.axis_name().empty() ? "" : " ", h.axis_name());
-}
-
 Json parameter_json(std::string_view name, double value, std::string_view unit) {
   return {{"name", name}, {"value", value}, {"unit", unit}};
 }
@@ -87,18 +83,28 @@ Json noise_json(const diagnose::NoiseFinding& f, double start_s, double end_s) {
 
 }  // namespace
 
+std::string full_name(const Hypothesis& h) {
+  return fmt::format("{}{}{}", h.effect->name, h.axis_name().empty() ? "" : " ", h.axis_name());
+}
+
+std::string full_name(const diagnose::NoiseFinding& f) {
+  return fmt::format("{} {}{}{}", f.name, f.sensor, f.axis.empty() ? "" : " ", f.axis);
+}
+
 std::string explanation(const diagnose::Finding& f) {
   const diagnose::Effect& effect = *f.hypothesis.effect;
   std::string text = fmt::format("{} {}: {} = {:.3g} +- {:.2g} {}.", effect.meaning, effect.equation, effect.parameter, f.value,
                                  f.sd, effect.unit);
+  if (f.alternatives.empty()) return text + " No other effect explains it a thousandth as well.";
   return text + other_readings(f.alternatives, effect.separating_manoeuvre);
 }
 
 std::string explanation(const diagnose::NoiseFinding& f) {
-  if (f.meaning.empty()) return "The innovations are likelier with this noise than with the one stated.";
-  std::string text = fmt::format("{} {}: {} = {:.3g}", f.meaning, f.equation, f.parameter, f.value);
+  std::string text = f.meaning.empty() ? "The innovations are likelier with other noise than with the one stated:"
+                                       : fmt::format("{} {}:", f.meaning, f.equation);
+  text += fmt::format(" {} = {:.3g}", f.parameter, f.value);
   if (f.sd > 0.0) text += fmt::format(" +- {:.2g}", f.sd);
-  text += fmt::format(" {}", f.unit);
+  text += f.unit == "1" ? " times what is stated" : fmt::format(" {}", f.unit);
   text += f.time_s > 0.0 ? fmt::format(", T about {:.2g} s.", f.time_s) : ".";
   return text + other_readings(f.alternatives, f.separating_manoeuvre);
 }
@@ -218,15 +224,19 @@ std::string diagnosis_json(const diagnose::Diagnosis& d, const diagnose::Mission
   return j.dump(1) + "\n";
 }
 
+std::string_view in_simulation(const diagnose::Finding& finding, const std::optional<SimulationCheck>& simulation) {
+  if (!simulation) return {};
+  return simulation->has(finding) ? " The simulation has it too." : " The simulation does not have it.";
+}
+
 std::string diagnosis_text(const diagnose::Diagnosis& d, const std::optional<SimulationCheck>& simulation) {
   std::string text;
   if (d.findings.empty() && d.noise.empty()) text = "Nothing is missing from the model that this mission could show.\n";
   for (const diagnose::Finding& f : d.findings)
     text += fmt::format("{}{}: {}{}\n", full_name(f.hypothesis),
                         f.from ? fmt::format(" from {:.1f} s", f.from->sow()) : std::string(), explanation(f),
-                        simulation && simulation->has(f) ? " The simulation has it too." : "");
-  for (const diagnose::NoiseFinding& f : d.noise)
-    text += fmt::format("{} {} {}: {}\n", f.name, f.sensor, f.axis, explanation(f));
+                        in_simulation(f, simulation));
+  for (const diagnose::NoiseFinding& f : d.noise) text += fmt::format("{}: {}\n", full_name(f), explanation(f));
   if (const std::string why = why_not_accepted(d); !why.empty()) text += fmt::format("Not accepted. {}\n", why);
   if (simulation)
     for (const diagnose::Finding& f : simulation->diagnosis.findings)

@@ -14,6 +14,7 @@ namespace coast::cli {
 struct SimulationCheck {
   std::string source;
   diagnose::Diagnosis diagnosis;
+  std::string of_another_drive = {};  ///< why its figures say little of the recording; empty where it is of the same drive
   /// Whether the simulation has an effect too, of about that size.
   [[nodiscard]] bool has(const diagnose::Finding& finding) const;
 };
@@ -39,6 +40,12 @@ struct SimulationCheck {
 /// The section that sets the recording among its twins.
 [[nodiscard]] report::Section twin_section(const diagnose::Diagnosis& diagnosis,
                                            const std::optional<SimulationCheck>& simulation);
+/// Name and axis; of noise, the sensor too.
+[[nodiscard]] std::string full_name(const diagnose::Hypothesis& hypothesis);
+[[nodiscard]] std::string full_name(const diagnose::NoiseFinding& finding);
+/// A sentence that says whether the user's own simulation has it; empty where there is none.
+[[nodiscard]] std::string_view in_simulation(const diagnose::Finding& finding,
+                                             const std::optional<SimulationCheck>& simulation);
 /// What was found, how large and what else it could be, in a paragraph.
 [[nodiscard]] std::string explanation(const diagnose::Finding& finding);
 [[nodiscard]] std::string explanation(const diagnose::NoiseFinding& finding);

@@ -50,6 +50,11 @@ std::string sized(double value, double sd, std::string_view unit) {
   return sd > 0.0 ? fmt::format("{:.3g} +- {:.2g}{}", value, sd, of) : fmt::format("{:.3g}{}", value, of);
 }
 
+std::string p_value(double p) {
+  constexpr double kLeast = 1e-15;  // of a tail that is computed in double precision
+  return p < kLeast ? fmt::format("< {:.0g}", kLeast) : fmt::format("{:.1g}", p);
+}
+
 std::string when(const diagnose::Finding& f) {
   if (!f.from) return "always";
   const std::string begin = fmt::format("{:.1f} +- {:.1f}", f.from->sow(), f.from_sd_s);
@@ -71,14 +76,14 @@ report::Table finding_table(const Diagnosis& d) {
     table.rows.push_back(cells({std::string(f.hypothesis.effect->name), std::string(diagnose::name(f.hypothesis.effect->site)),
                                 f.hypothesis.axis_name(), when(f), sized(f.value, f.sd, f.hypothesis.effect->unit),
                                 number(f.delta_log_likelihood), f.held_out_gain ? number(*f.held_out_gain) : std::string(),
-                                fmt::format("{:.1g}", f.p_value)}));
+                                p_value(f.p_value)}));
   for (const diagnose::NoiseFinding& f : d.noise)
-    table.rows.push_back(cells({f.name, f.sensor, f.axis, "", sized(f.value, f.sd, f.unit), number(f.delta_log_likelihood), "",
-                                fmt::format("{:.1g}", f.p_value)}));
+    table.rows.push_back(cells(
+        {f.name, f.sensor, f.axis, "", sized(f.value, f.sd, f.unit), number(f.delta_log_likelihood), "", p_value(f.p_value)}));
   return table;
 }
 
-report::Section missing_section(const Diagnosis& d) {
+report::Section missing_section(const Diagnosis& d, const std::optional<SimulationCheck>& simulation) {
   report::Section section;
   section.id = "missing";
   section.title = "What is missing";
@@ -88,10 +93,15 @@ report::Section missing_section(const Diagnosis& d) {
   }
   section.lead = "What the recording has and the configured model has not, each with the equation that was missing.";
   for (const diagnose::Finding& f : d.findings)
-    section.notes.push_back({report::Note::Kind::kWarning,
-                             fmt::format("{} {}", f.hypothesis.effect->name, f.hypothesis.axis_name()), explanation(f)});
+    section.notes.push_back(
+        {report::Note::Kind::kWarning, full_name(f.hypothesis), explanation(f) + std::string(in_simulation(f, simulation))});
   for (const diagnose::NoiseFinding& f : d.noise)
-    section.notes.push_back({report::Note::Kind::kWarning, fmt::format("{} {} {}", f.name, f.sensor, f.axis), explanation(f)});
+    section.notes.push_back({report::Note::Kind::kWarning, full_name(f), explanation(f)});
+  if (!d.noise.empty())
+    section.notes.push_back(
+        {report::Note::Kind::kInfo, "Noise is fitted as a whole",
+         "run.diagnosed.yaml has all of the fit, also what differs from what is stated by no more than chance "
+         "and is not told here."});
   section.tables.push_back(finding_table(d));
   return section;
 }
@@ -147,8 +157,11 @@ report::Section detectable_section(const Diagnosis& d) {
   section.id = "detectable";
   section.title = "What would have been seen";
   section.lead = fmt::format(
-      "Of every effect that was not found: the smallest size that this mission shows with a probability of 80 %. An IMU of the "
-      "grade \"{}\".",
+      "Of every effect that was not found: the smallest size that this mission shows with a probability of 80 %; of what may "
+      "begin at "
+      "any time, at the median instant. Plausible: what is usual for an IMU of the grade \"{}\"; where the smallest is larger, "
+      "the "
+      "effect may be there unseen.",
       diagnose::name(d.grade));
   report::Table table;
   table.id = "detectable-sizes";
@@ -182,10 +195,11 @@ report::Page diagnosis_page(const std::string& title, const Diagnosis& d, const 
   page.subtitle = "What the configured model leaves out";
   if (!d.innovations_before.empty()) page.start = d.innovations_before.front().t;
   page.tiles = diagnosis_tiles(d);
-  page.sections = {missing_section(d), fit_section(d)};
+  page.sections = {missing_section(d, simulation), fit_section(d)};
   if (!d.twins.empty()) page.sections.push_back(twin_section(d, simulation));
   page.sections.push_back(detectable_section(d));
-  page.sections.back().notes.push_back({report::Note::Kind::kCode, "run.diagnosed.yaml", diagnosed_yaml});
+  page.sections.back().notes.push_back(
+      {report::Note::Kind::kCode, "run.diagnosed.yaml: the run with what was found", diagnosed_yaml});
   page.footer = fmt::format("coast {}, coast diagnose", COAST_VERSION);
   return page;
 }

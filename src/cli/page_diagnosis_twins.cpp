@@ -118,6 +118,8 @@ report::Section twin_section(const diagnose::Diagnosis& d, const std::optional<S
           : std::string(
                 "Recordings of the same motion, simulated as the model says and run through the same steps. p: that "
                 "any figure of a twin lies as far out by chance.");
+  if (simulation && !simulation->of_another_drive.empty())
+    section.notes.push_back({report::Note::Kind::kWarning, "Another drive", simulation->of_another_drive});
   section.panels.push_back(epoch_panel(d));
   section.panels.push_back(twin_panel(of_the_whole(d.twins), of_the_whole(d.twins_after)));
   section.tables.push_back(twin_table("twins-before", "Of the configured model", d.twins));

@@ -159,6 +159,12 @@ bool is_seen(const Hypothesis& h, double information) {
   return information * plausible * plausible > 1.0;
 }
 
+double median(std::vector<double> values) {
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::ranges::nth_element(values, middle);
+  return *middle;
+}
+
 Suspicion best_of(const Examination::Track& track, const Hypothesis& h) {
   std::size_t best = 0;
   const auto ratio = [&](std::size_t k) { return track.score[k] * track.score[k] / track.information[k]; };
@@ -189,6 +195,7 @@ Suspicion best_of(const Examination::Track& track, const Hypothesis& h) {
           .from_sd_s = reach / 1.96,
           .estimate = track.score[best] / track.information[best],
           .sd = 1.0 / std::sqrt(track.information[best]),
+          .usual_sd = 1.0 / std::sqrt(median(track.information)),
           .likelihood_ratio = ratio(best),
           .log_bayes = log_bayes_factor(track.score[best], track.information[best], h.plausible) - std::log(places)};
 }
@@ -236,9 +243,7 @@ bool Examination::take_draws_of(const Examination& other) {
 
 LargestByChance LargestByChance::of(std::vector<double> largest) {
   if (largest.empty()) return {};
-  const auto middle = largest.begin() + static_cast<std::ptrdiff_t>(largest.size() / 2);
-  std::ranges::nth_element(largest, middle);
-  return {std::max(1.0, std::log(0.5) / std::log1p(-noise::chi2_survival(1.0, *middle)))};
+  return {std::max(1.0, std::log(0.5) / std::log1p(-noise::chi2_survival(1.0, median(std::move(largest)))))};
 }
 
 double LargestByChance::p_value(double likelihood_ratio) const {
@@ -282,6 +287,7 @@ Suspicions suspicions(const Examination& examination, const Hypotheses& hypothes
                     .from_sd_s = 0.0,
                     .estimate = score / information,
                     .sd = 1.0 / std::sqrt(information),
+                    .usual_sd = 1.0 / std::sqrt(information),
                     .likelihood_ratio = score * score / information,
                     .log_bayes = log_bayes_factor(score, information, h.plausible)});
   }

@@ -193,7 +193,7 @@ void Search::describe_what_was_not_found() {
   for (const Suspicion& s : suspicions_.all) {
     if (told[static_cast<std::size_t>(s.hypothesis)]) continue;
     told[static_cast<std::size_t>(s.hypothesis)] = true;
-    result_.detectable_not_found.push_back({hypotheses[s.hypothesis], minimal_detectable(s.sd, result_.threshold)});
+    result_.detectable_not_found.push_back({hypotheses[s.hypothesis], minimal_detectable(s.usual_sd, result_.threshold)});
   }
   for (Eigen::Index i = 0; i < hypotheses.size(); ++i)
     if (!told[static_cast<std::size_t>(i)])

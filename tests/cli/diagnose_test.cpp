@@ -125,6 +125,26 @@ TEST(DiagnoseCommand, SaysWhatTheUsersOwnSimulationLacks) {
   EXPECT_FALSE(diagnosis["twins"].empty());  // three seeds in their place
 }
 
+TEST(DiagnoseCommand, WarnsOfASimulationOfAnotherDrive) {
+  const test::TemporaryDirectory folder;
+  std::string text = text_of(city_drive().parent_path() / "scenario.yaml");
+  const std::string course = "course_deg: 30";
+  ASSERT_NE(text.find(course), std::string::npos);
+  text.replace(text.find(course), course.size(), "course_deg: 120");
+  write(city_drive().parent_path() / "other.yaml", text);
+  const fs::path run_yaml = city_drive() / "run.yaml";
+  const auto warning_of = [&](const char* scenario) {
+    const Outcome outcome = run(fmt::format("diagnose '{}' --twins 0 --simulation '{}' --out '{}'", run_yaml.string(),
+                                            (city_drive().parent_path() / scenario).string(), (folder.path() / "out").string()),
+                                folder.path());
+    EXPECT_EQ(outcome.status, 0) << outcome.error;
+    return outcome.error.find("may be the drive") != std::string::npos;
+  };
+  EXPECT_TRUE(warning_of("other.yaml"));
+  EXPECT_NE(text_of(folder.path() / "out" / "report.json").find("may be the drive"), std::string::npos);
+  EXPECT_FALSE(warning_of("scenario.yaml"));
+}
+
 TEST(DiagnoseCommand, TakesNoSimulationThatIsNotThere) {
   const test::TemporaryDirectory folder;
   const Outcome outcome = run(fmt::format("diagnose '{}' --simulation none.yaml --out '{}'", wrong_lever_arm().string(),

@@ -26,6 +26,16 @@ TEST(Diagnosis, NothingIsMissingFromAnHonestMission) {
   EXPECT_TRUE(d.noise.empty());
   EXPECT_GT(d.detectable_not_found.size(), 30U);
   EXPECT_FALSE(d.not_observable.empty());  // the base's coordinates at least
+  // Of what may begin at any time no smallest size is that of an instant by chance: a step in the mission's last second would
+  // have to be hundreds of times as large.
+  double least = std::numeric_limits<double>::infinity(), most = 0.0;
+  for (const diagnose::Detectable& one : d.detectable_not_found) {
+    if (one.hypothesis.effect->name != "bias_step" || one.hypothesis.effect->site != diagnose::Site::kAccel) continue;
+    least = std::min(least, one.minimal);
+    most = std::max(most, one.minimal);
+  }
+  EXPECT_GT(most, 0.0);
+  EXPECT_LT(most, 10.0 * least);
   EXPECT_NEAR(d.before.nis, 1.0, 0.1);
 }
 

@@ -63,6 +63,7 @@ struct Suspicion {
   double from_sd_s = 0.0;
   double estimate = 0.0;
   double sd = 0.0;
+  double usual_sd = 0.0;          ///< where it begins at some time: at the median of the instants at which it might
   double likelihood_ratio = 0.0;  ///< twice the logarithm
   double log_bayes = 0.0;         ///< of the effect with its plausible size against none
   double p_value = 1.0;           ///< that the largest of all is as large by chance
