@@ -95,7 +95,7 @@ std::string explanation(const diagnose::Finding& f) {
   const diagnose::Effect& effect = *f.hypothesis.effect;
   std::string text = fmt::format("{} {}: {} = {:.3g} +- {:.2g} {}.", effect.meaning, effect.equation, effect.parameter, f.value,
                                  f.sd, effect.unit);
-  if (f.alternatives.empty()) return text + " No other effect explains it a thousandth as well.";
+  if (f.alternatives.empty()) return text + " No other reading of it was found.";
   return text + other_readings(f.alternatives, effect.separating_manoeuvre);
 }
 

@@ -73,7 +73,8 @@ std::vector<diagnose::NamedEffect> read_effects(const Node& list) {
     const auto to = item.find("end_s");
     if ((from || to) && one.effect != nullptr && one.effect->needs_reference)
       throw item.error("an instant", "none: the base stays where it is");
-    if (from && one.effect == nullptr) throw from->error("an instant", "none: noise and converters are the same all the time");
+    if ((from || to) && one.effect == nullptr)
+      throw item.error("an instant", "none: noise and converters are the same all the time");
     if ((from || to) && one.effect != nullptr && one.effect->slip)
       throw item.error("an instant", fmt::format("none: {} is configured for the whole mission", one.effect->name));
     if (from) one.from_s = from->number();

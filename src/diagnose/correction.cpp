@@ -98,7 +98,7 @@ MissionInput without(const std::vector<Taken>& taken, const MissionInput& input,
   std::vector<Taken> in_recordings;
   for (const Taken& one : taken) {
     const Hypothesis& h = hypotheses[one.hypothesis];
-    if (!h.effect->configure || one.from) {
+    if (!h.effect->configure || one.from || one.to) {
       in_recordings.push_back(one);
       continue;
     }

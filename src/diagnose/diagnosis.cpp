@@ -1,5 +1,6 @@
 #include "coast/diagnose/diagnosis.hpp"
 
+#include <fmt/format.h>
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
@@ -37,7 +38,8 @@ void step_to_the_end(Search& search) {
 void give_up(Searched& searched, std::size_t index, Rejected::Reason reason) {
   Search& search = *searched.search;
   const Hypothesis& h = search.run().hypotheses()[search.taken()[index].hypothesis];
-  searched.rejected.push_back({std::string(h.effect->name) + (h.axis_name().empty() ? "" : " " + h.axis_name()), reason});
+  const std::string axis = h.axis_name().empty() ? std::string() : " " + h.axis_name();
+  searched.rejected.push_back({fmt::format("{} {}{}", h.effect->name, name(h.effect->site), axis), reason});
   search.give_up(index);
   searched.held_out.reset();
 }
@@ -134,18 +136,23 @@ std::size_t try_all_constant(Searched& best) {
   return in_vain;
 }
 
-/// The figures of many recordings, on all threads.
+/// The figures of many recordings, on all threads; those by which the filter breaks down are left out.
 std::vector<std::vector<Statistic>> figures_of(std::size_t count, const std::function<MissionInput(std::size_t)>& recording,
                                                std::uint64_t seed, const study::Progress& progress) {
   std::vector<std::vector<Statistic>> figures(count);
   std::mutex telling;  // one at a time
   std::size_t done = 0;
   tbb::parallel_for(std::size_t{0}, count, [&](std::size_t i) {
-    figures[i] = statistics_of(recording(i), seed);
+    try {
+      figures[i] = statistics_of(recording(i), seed);
+    } catch (const NumericalError&) {
+      figures[i].clear();
+    }
     const std::lock_guard lock(telling);
     ++done;
     if (progress) progress("running twins", static_cast<double>(done) / static_cast<double>(count));
   });
+  std::erase_if(figures, [](const std::vector<Statistic>& one) { return one.empty(); });
   return figures;
 }
 

@@ -157,17 +157,17 @@ TEST(DiagnoseCommand, TakesNoSimulationThatIsNotThere) {
 TEST(DiagnosisJson, SaysWhyAnEffectWasGivenUp) {
   diagnose::Diagnosis diagnosis;
   diagnosis.runs = 1;
-  diagnosis.rejected = {{"harmonic_disturbance y", diagnose::Rejected::Reason::kHeldOut},
-                        {"bias_step x", diagnose::Rejected::Reason::kOutages}};
+  diagnosis.rejected = {{"harmonic_disturbance accel y", diagnose::Rejected::Reason::kHeldOut},
+                        {"bias_step gyro x", diagnose::Rejected::Reason::kOutages}};
   diagnose::MissionInput input;
   input.imu.samples.resize(2);
   const auto written = nlohmann::json::parse(diagnosis_json(diagnosis, input, {}));
   test::expect_valid("diagnosis", written);
   const nlohmann::json& rejected = written.at("verification").at("rejected");
   ASSERT_EQ(rejected.size(), 2U);
-  EXPECT_EQ(rejected[0].at("effect"), "harmonic_disturbance y");
+  EXPECT_EQ(rejected[0].at("effect"), "harmonic_disturbance accel y");
   EXPECT_NE(rejected[0].at("reason").get<std::string>().find("half"), std::string::npos);
-  EXPECT_EQ(rejected[1].at("effect"), "bias_step x");
+  EXPECT_EQ(rejected[1].at("effect"), "bias_step gyro x");
   EXPECT_NE(rejected[1].at("reason").get<std::string>().find("outages"), std::string::npos);
 }
 
@@ -209,6 +209,8 @@ INSTANTIATE_TEST_SUITE_P(
         SpoiledEffect{"an axis of another effect", "{name: gyro_scale_factor, sensor: gyro, axis: zy, value: 0.01}",
                       "x | y | z"},
         SpoiledEffect{"an axis where there is one", "{name: gnss_time_offset, sensor: clock, axis: x, value: 0.01}", "axis"},
+        SpoiledEffect{"a converter that ends", "{name: saturation, sensor: gyro, axis: z, value: 1, end_s: 208900}",
+                      "the same all the time"},
         SpoiledEffect{"a base that moves", "{name: base_coordinate_offset, sensor: gnss, axis: n, value: 0.1, start_s: 208900}",
                       "the base stays where it is"},
         SpoiledEffect{"no size", "{name: gyro_scale_factor, sensor: gyro, axis: z}", "'value' is missing"},

@@ -118,7 +118,7 @@ struct Rejected {
     kHeldOut,  ///< its size from one half of the mission does not explain the other half
     kOutages,  ///< artificial outages drift farther with it
   };
-  std::string effect;  ///< its name and axis
+  std::string effect;  ///< its name, sensor and axis
   Reason reason = Reason::kHeldOut;
 };
 
