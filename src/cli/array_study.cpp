@@ -265,7 +265,7 @@ StudyPart run_study(const ArrayStudyConfig& config, const Progress& progress) {
 void array_study(const std::filesystem::path& study_yaml, const CommonOptions& options) {
   ProgressLine line(options.quiet);
   const ArrayStudyConfig config = read_array_study(study_yaml);
-  const std::filesystem::path out = output_folder(study_yaml, options.out);
+  const std::filesystem::path out = output_folder(study_yaml, options.out, {"array_study.json", "report.json", "report.html"});
   const char* kind = std::array{"models", "merges", "outages", "defects"}[static_cast<std::size_t>(config.kind)];
   StudyPart part;
   try {

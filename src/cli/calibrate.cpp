@@ -8,6 +8,7 @@
 
 #include "calibration_page.hpp"
 #include "calibration_result.hpp"
+#include "coast/io/results_folder.hpp"
 #include "coast/io/writers.hpp"
 #include "coast/record/error.hpp"
 #include "coast/report/render.hpp"
@@ -117,7 +118,10 @@ void print_warnings(const CalibrationResult& result) {
 void calibrate(const std::filesystem::path& input, const CommonOptions& options) {
   ProgressLine line(options.quiet);
   const CalibrationConfig config = read_calibration(input);
-  const std::filesystem::path out = output_folder(input, options.out);
+  for (const auto* records : {&config.records, &config.tested_on})
+    for (const CalibrationRecord& record : *records) io::note_read(record.file.file);
+  const std::filesystem::path out =
+      output_folder(input, options.out, {"error_model.yaml", "calibration.json", "report.json", "report.html"});
   CalibrationResult result;
   const std::vector<noise::StaticRecording> records = read_records(config, result, line);
   line.clear();

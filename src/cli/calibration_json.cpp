@@ -183,7 +183,6 @@ Json axis_json(const CalibratedAxis& axis) {
   put(j, "common_parameters_p_value", r.common_parameters_p);
   if (!axis.own.empty()) j["records_alone"] = own_json(axis);
   for (const TestedRecord& tested : axis.tests) j["tests"].push_back(test_json(tested));
-  j["seconds"] = r.seconds;
   return j;
 }
 

@@ -60,7 +60,7 @@ void compare(const std::filesystem::path& a, const std::filesystem::path& b, con
     throw InputError({b.string(), 0, "no epoch within the time of " + a.string(), "trajectories that overlap",
                       "Check the GPS weeks of both files."});
   if (!options.out.empty()) {
-    const std::filesystem::path out = output_folder(a, options.out);
+    const std::filesystem::path out = output_folder(a, options.out, {"differences.csv", "comparison.json"});
     io::write_text(out / "differences.csv", table.text());
     io::write_text(out / "comparison.json", error_json(s).dump(1) + "\n");
   }

@@ -86,7 +86,9 @@ void diagnose(const std::filesystem::path& run_yaml, const DiagnoseOptions& choi
   const study::Progress progress = [&line](const char* what, double fraction) { line.show(what, fraction); };
   const RunConfig config = read_run_config(run_yaml);
   Recordings recordings = load(config, [&line](double share) { line.show("solving GNSS positions", share); });
-  const std::filesystem::path out = output_folder(run_yaml, options.out);
+  const std::filesystem::path out =
+      output_folder(run_yaml, options.out,
+                    {"diagnosis.json", "run.diagnosed.yaml", "error_model.diagnosed.yaml", "report.json", "report.html"});
   line.clear();
   print_inspection(recordings, options.quiet);
   const diagnose::MissionInput input = recorded_input(run_yaml, config, recordings);

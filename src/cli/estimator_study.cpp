@@ -14,7 +14,8 @@ namespace coast::cli {
 void estimator_study(const std::filesystem::path& study_yaml, const CommonOptions& options) {
   ProgressLine line(options.quiet);
   const EstimatorStudyConfig config = read_estimator_study(study_yaml);
-  const std::filesystem::path out = output_folder(study_yaml, options.out);
+  const std::filesystem::path out =
+      output_folder(study_yaml, options.out, {"estimator_study.json", "report.json", "report.html"});
   EstimatorStudyOutcome outcome;
   std::mutex mutex;
   outcome.result = noise::run_estimator_study(config.study, [&](double fraction) {

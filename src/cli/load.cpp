@@ -13,6 +13,7 @@
 #include "coast/io/inspect.hpp"
 #include "coast/io/member_blocks.hpp"
 #include "coast/io/noise_levels.hpp"
+#include "coast/io/results_folder.hpp"
 #include "coast/record/error.hpp"
 #include "ppk_summary.hpp"
 
@@ -127,7 +128,8 @@ void take_out_effects(const RunConfig& config, Recordings& recordings, study::Se
   setup = std::move(without.setup);
 }
 
-std::filesystem::path output_folder(const std::filesystem::path& input, const std::filesystem::path& out) {
+std::filesystem::path output_folder(const std::filesystem::path& input, const std::filesystem::path& out,
+                                    std::vector<std::string> files) {
   std::filesystem::path folder = out;
   if (folder.empty()) {
     folder = input;
@@ -137,6 +139,10 @@ std::filesystem::path output_folder(const std::filesystem::path& input, const st
   std::filesystem::create_directories(folder, failed);
   if (failed || !std::filesystem::is_directory(folder))
     throw OutputError(folder.string(), failed ? failed.message() : "not a folder");
+  // A run that repeats another would write its own file anew at the end.
+  const std::string name = input.filename().string();
+  if (name.ends_with(".resolved.yaml")) files.push_back(name);
+  io::open_results_folder(folder, files);
   return folder;
 }
 

@@ -34,7 +34,10 @@ void print_inspection(const Recordings& recordings, bool quiet);
                                     const std::optional<study::OutageSweep>& sweep);
 /// Takes the effects that run.yaml names out of the recordings and the setup; nothing where it names none.
 void take_out_effects(const RunConfig& config, Recordings& recordings, study::Setup& setup, const study::Progress& progress);
-/// `--out`, or the yaml's name + ".out"; made where it is missing.  @throws OutputError
-[[nodiscard]] std::filesystem::path output_folder(const std::filesystem::path& input, const std::filesystem::path& out);
+/// `--out`, or the yaml's name + ".out"; made where it is missing, and marked as coast's (io/results_folder.hpp).
+/// @param files  names that will be written: refused now, and not after the work, where they are another's
+/// @throws OutputError, InputError
+[[nodiscard]] std::filesystem::path output_folder(const std::filesystem::path& input, const std::filesystem::path& out,
+                                                  std::vector<std::string> files = {});
 
 }  // namespace coast::cli

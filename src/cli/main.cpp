@@ -2,11 +2,15 @@
 #include <tbb/global_control.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <cstdio>
 #include <new>
 
+#include "coast/config/node.hpp"
 #include "coast/record/error.hpp"
 #include "commands.hpp"
+#include "interrupt.hpp"
+#include "schema_check.hpp"
 
 namespace {
 
@@ -81,7 +85,24 @@ void add_diagnose(CLI::App& app, std::filesystem::path& input, coast::cli::Diagn
       ->capture_default_str();
   diagnose->add_option("--simulation", choice.simulation,
                        "your own simulation in place of the twins: a scenario, or the run.yaml of a simulated recording");
-  diagnose->callback([&] { coast::cli::diagnose(input, choice, common); });
+  diagnose->callback([&] {
+    coast::cli::require_schema(input, "coast.run/1");
+    coast::cli::diagnose(input, choice, common);
+  });
+}
+
+// Names the nearest subcommand for a first word that is none.
+void require_subcommand(const CLI::App& app, const std::string& word) {
+  if (word.starts_with('-')) return;
+  std::vector<std::string> names;
+  for (const CLI::App* command : app.get_subcommands([](const CLI::App*) { return true; }))
+    names.push_back(command->get_name());
+  if (std::ranges::find(names, word) != names.end()) return;
+  const std::string near = coast::config::nearest(word, names);
+  throw coast::InputError({"", 0,
+                           near.empty() ? fmt::format("{} is no subcommand, there are: {}", word, fmt::join(names, ", "))
+                                        : fmt::format("{} is no subcommand: did you mean {}?", word, near),
+                           "", ""});
 }
 
 int run(int argc, char** argv) {
@@ -99,7 +120,10 @@ int run(int argc, char** argv) {
       subcommand(app, "process", "IMU + GNSS -> forward filter -> smoother -> trajectory, summary.json, report.html",
                  "coast process run.yaml --out results", common);
   process->add_option("run", input, "run.yaml")->required();
-  process->callback([&] { coast::cli::process(input, common); });
+  process->callback([&] {
+    coast::cli::require_schema(input, "coast.run/1");
+    coast::cli::process(input, common);
+  });
 
   coast::cli::DiagnoseOptions diagnose_choice;
   add_diagnose(app, input, diagnose_choice, common);
@@ -136,6 +160,7 @@ int run(int argc, char** argv) {
     if (common.threads > 0)
       limit.emplace(tbb::global_control::max_allowed_parallelism, static_cast<std::size_t>(common.threads));
   });
+  if (argc > 1) require_subcommand(app, argv[1]);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
@@ -147,8 +172,12 @@ int run(int argc, char** argv) {
 }  // namespace
 
 int main(int argc, char** argv) {
+  coast::cli::keep_standard_streams();
+  coast::cli::end_cleanly_on_signals();
   try {
-    return run(argc, argv);
+    const int status = run(argc, argv);
+    coast::cli::flush_standard_output();
+    return status;
   } catch (const coast::InputError& error) {
     fmt::print(stderr, "coast: {}\n", error.what());
     return kBadInput;

@@ -13,7 +13,8 @@ void outage(const std::filesystem::path& study_yaml, const CommonOptions& option
   ProgressLine line(options.quiet);
   const study::Progress progress = [&line](const char* what, double fraction) { line.show(what, fraction); };
   const StudyConfig config = read_study(study_yaml);
-  const std::filesystem::path out = output_folder(study_yaml, options.out);
+  const std::filesystem::path out =
+      output_folder(study_yaml, options.out, {"outage.json", "outages.csv", "report.json", "report.html"});
 
   std::optional<StudyJournalFile> file;
   const OpenJournal journal = [&](std::uint64_t made_from) {

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "coast/geo/units.hpp"
@@ -93,6 +94,8 @@ std::optional<Tile> lever_arm_tile(const ProcessPage& page) {
 /// Judged by its own sigma, not by metres: up to 1.5 sigma rms good, beyond 3 the filters contradict each other.
 constexpr double kConsistent = 1.5;
 constexpr double kContradicting = 3.0;
+// However large a sigma is stated, nobody takes a trajectory with degrees of roll or pitch between its two filters for good.
+constexpr double kGoodTilt = 2.0, kUsableTilt = 8.0;  // deg
 
 Tile position_separation_tile(const SeparationSummary& s) {
   return {"Separation, position",
@@ -110,7 +113,8 @@ Tile attitude_separation_tile(const SeparationSummary& s) {
   return {"Separation, attitude",
           triple({rms.z(), rms.y(), rms.x()}),
           "arcmin",
-          below(s.attitude_over_sigma, kConsistent, kContradicting),
+          std::max(below(s.attitude_over_sigma, kConsistent, kContradicting),
+                   below(std::max(s.attitude_rms.x(), s.attitude_rms.y()) / geo::kDegree, kGoodTilt, kUsableTilt)),
           fmt::format("Forward minus backward, rms of heading / pitch / roll. {} times its sigma; near 1 is good.",
                       number(s.attitude_over_sigma, 2)),
           {},
@@ -189,6 +193,19 @@ Tile longest_gap_tile(const ProcessPage& page) {
           "accuracy-position"};
 }
 
+/// The verdict of summary.json, before everything else.
+Tile verdict_tile(const ProcessPage& page) {
+  const Judgement& verdict = page.result.verdict;
+  const std::array<Verdict, 3> colours{Verdict::kGood, Verdict::kWarn, Verdict::kBad};
+  return {"Verdict",
+          name(verdict.standing()),
+          "",
+          colours[static_cast<std::size_t>(verdict.standing())],
+          verdict.line().substr(std::string("verdict: ").size()),
+          {},
+          "input"};
+}
+
 Tile warning_tile(const ProcessPage& page) {
   std::vector<std::string> kinds;
   for (const record::Event& event : page.result.events)
@@ -207,7 +224,7 @@ Tile warning_tile(const ProcessPage& page) {
 }  // namespace
 
 std::vector<Tile> acceptance_tiles(const ProcessPage& page) {
-  std::vector<Tile> tiles{quality_tile(page)};
+  std::vector<Tile> tiles{verdict_tile(page), quality_tile(page)};
   if (auto tile = lever_arm_tile(page)) tiles.push_back(std::move(*tile));
   if (const auto separation = summarise(page.result.separations)) {
     tiles.push_back(position_separation_tile(*separation));

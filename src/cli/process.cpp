@@ -64,6 +64,7 @@ class ProcessRun {
         setup_(std::move(setup)),
         mission_(std::move(recordings.imu), std::move(recordings.gnss), setup_, progress),
         curves_(mission_.start().nav),
+        motion_(mission_.mission()),
         forward_knots_(mission_.mission().imu.samples.back().t - mission_.start().nav.t) {
     describe_input();
   }
@@ -75,6 +76,9 @@ class ProcessRun {
   void study_sweep();
   void check_lever_arm();
   void separate_forward_and_backward();
+  void judge();
+  [[nodiscard]] const Judgement& verdict() const { return result_.verdict; }
+  [[nodiscard]] const record::Events& adaptations() const { return mission_.adaptations(); }
   /// summary.json, report.html, report.json, run.resolved.yaml. @return the lines for the terminal
   [[nodiscard]] std::string write_results();
 
@@ -88,6 +92,7 @@ class ProcessRun {
   void count_innovations();
   void note_scores(const std::vector<study::Outage>& gaps, const Scores& forward, const Scores& smoothed);
   void note_estimates() const;
+  void doubt_lever_arm();
 
   const RunConfig& config_;
   std::filesystem::path out_;
@@ -101,6 +106,7 @@ class ProcessRun {
   std::optional<estimate::BackwardKnots> backward_;  ///< of a combined solution
   study::Solution solution_;
   TrajectoryCurves curves_;
+  MotionChecks motion_;
   KnotStates forward_knots_;
 };
 
@@ -127,6 +133,7 @@ void ProcessRun::describe_input() {
   result_.end = mission.imu.samples.back().t;
   result_.alignment = mission_.start().method;
   result_.noise_fit = mission_.noise_fit();
+  result_.events.insert(result_.events.end(), adaptations().begin(), adaptations().end());
   std::map<record::FixQuality, std::size_t> counts;
   for (const record::GnssFix& fix : mission.gnss.fixes)
     if (fix.t >= result_.start && fix.t <= result_.end) {
@@ -207,6 +214,7 @@ void ProcessRun::solve_and_write() {
   BackgroundSink draw([&](const record::TrajectoryEpoch& epoch) {
     curves_.add_smoothed(epoch);
     scores.add(epoch);
+    motion_.add(epoch);
     if (keep_gap_free) gap_free_.add(epoch);
   });
   const auto deliver = [&](const record::TrajectoryEpoch& epoch) {
@@ -311,6 +319,41 @@ void ProcessRun::check_lever_arm() {
   if (mission_.mission().gnss.fixes.size() > 10) result_.lever_arm = study::check_lever_arm(mission_, kPriorSd, {});
 }
 
+// Where innovations are too large, so are the sigmas of what they show too small.
+void ProcessRun::doubt_lever_arm() {
+  constexpr double kSigmas = 6.0;
+  constexpr double kLeast = 0.15;      // m
+  constexpr double kObservable = 0.2;  // m
+  if (!result_.lever_arm || mission_.options().auxiliary.lever_arm_sd_m > 0.0 || !(result_.nis.expected > 0.0)) return;
+  const double excess = std::sqrt(std::max(1.0, result_.nis.mean / result_.nis.expected));
+  const Eigen::Vector3d& difference = result_.lever_arm->difference_m;
+  const Eigen::Vector3d sd = excess * result_.lever_arm->sd_m;
+  bool contradicted = false;
+  for (Eigen::Index i = 0; i < 3; ++i)
+    contradicted |= sd(i) < kObservable && std::abs(difference(i)) > std::max(kLeast, kSigmas * sd(i));
+  if (!contradicted) return;
+  const Eigen::Vector3d& stated = mission_.setup().lever_arm_b;
+  const Eigen::Vector3d found = stated + difference;
+  result_.events.push_back(
+      {record::Event::Severity::kWarning, "lever_arm_contradicted",
+       fmt::format(
+           "The recording shows the antenna at ({:.2f}, {:.2f}, {:.2f}) m +- ({:.2f}, {:.2f}, {:.2f}), forward right down "
+           "of the IMU; the file says ({:.2f}, {:.2f}, {:.2f}). Measure it again, or set `imu.lever_arm_m: [{:.2f}, {:.2f}, "
+           "{:.2f}]`.",
+           found.x(), found.y(), found.z(), sd.x(), sd.y(), sd.z(), stated.x(), stated.y(), stated.z(), found.x(), found.y(),
+           found.z()),
+       std::nullopt, 1});
+}
+
+void ProcessRun::judge() {
+  doubt_lever_arm();
+  std::vector<Check> checks = motion_.checks();
+  const estimate::FilterState& last = solution_.forward.last;
+  if (auto check = sensor_check(solution_.filter->layout(), last.x)) checks.push_back(std::move(*check));
+  result_.verdict = cli::judge(result_, std::move(checks));
+  result_.verdict.accepted = config_.accept;
+}
+
 void ProcessRun::separate_forward_and_backward() {
   SeparationRecorder recorder(forward_knots_.knots());
   // Multi-pass shows the separation of two filters that have both converged.
@@ -323,14 +366,14 @@ void ProcessRun::separate_forward_and_backward() {
 
 // What the run found stands in the resolved file as comments, ready to be stated in another run.
 void ProcessRun::note_estimates() const {
-  if (mission_.options().auxiliary.time_offset_sd_s > 0.0)
+  if (mission_.options().auxiliary.time_offset_sd_s > 0.0 || mission_.mission().time_offset_s != config_.setup.time_offset_s)
     config_.root.at("gnss").note_estimated("time_offset_s", fmt::format("{:.17g}", mission_.mission().time_offset_s));
   const Eigen::Vector3d& arm = mission_.mission().lever_arm_b;
   if (mission_.options().auxiliary.lever_arm_sd_m > 0.0)
     config_.root.at("imu").note_estimated("lever_arm_m", fmt::format("[{:.17g}, {:.17g}, {:.17g}]", arm.x(), arm.y(), arm.z()));
   if (!result_.noise_fit) return;
   const estimate::NoiseAdjustment& a = result_.noise_fit->adjustment;
-  const estimate::NoiseFitChoice& choice = *config_.setup.noise_fit;
+  const estimate::NoiseFitChoice& choice = *mission_.setup().noise_fit;
   if (choice.imu_white_noise)
     config_.root.at("imu").note_estimated(
         "noise", fmt::format("{{gyro_factor: {:.17g}, accel_factor: {:.17g}}}", a.gyro_factor, a.accel_factor));
@@ -355,6 +398,28 @@ std::string ProcessRun::write_results() {
   return summary_text(result_);
 }
 
+// What turns tell of the times is a candidate for the filter, not advice: with fixes a second apart it is now and then false.
+void leave_time_to_the_filter(const RunConfig& config, Recordings& recordings, study::Setup& setup) {
+  constexpr double kAgrees = 0.3;    // s
+  constexpr double kNothing = 0.15;  // s: the state of the offset finds as much
+  if (!recordings.time_shift_s) return;
+  const double seen = -*recordings.time_shift_s;
+  const bool left = config.setup.unstated.time_offset;
+  if (left && std::abs(seen) >= kNothing) setup.unstated.time_offset_seen_s = seen;
+  if (!left && std::abs(seen - config.setup.time_offset_s) > kAgrees) return;
+  std::erase_if(recordings.inspection_events,
+                [](const record::Event& event) { return event.kind == "time_shift" || event.kind == "leap_second_shift"; });
+}
+
+// Nothing sensible follows where gravity points the wrong way at rest.
+void refuse_hopeless(const RunConfig& config, const Recordings& recordings) {
+  if (config.accept) return;
+  for (const record::Event& event : recordings.inspection_events)
+    if (event.kind == "gravity_sign" || event.kind == "gravity_axis" || (event.kind == "gyro_sign" && !config.tight))
+      throw NumericalError("the axes contradict gravity or the course", "",
+                           event.text + " (`accept: true` processes it all the same)");
+}
+
 }  // namespace
 
 void process(const std::filesystem::path& run_yaml, const CommonOptions& options) {
@@ -365,20 +430,30 @@ void process(const std::filesystem::path& run_yaml, const CommonOptions& options
   Recordings recordings = load(config, [&line](double share) { line.show("solving GNSS positions", share); });
   const std::filesystem::path out = output_folder(run_yaml, options.out);
   line.clear();
-  print_inspection(recordings, options.quiet);
 
   study::Setup setup = setup_of(config, recordings, config.sweep);
+  leave_time_to_the_filter(config, recordings, setup);
+  print_inspection(recordings, options.quiet);
+  refuse_hopeless(config, recordings);
   take_out_effects(config, recordings, setup, progress);
   ProcessRun run(config, std::move(recordings), std::move(setup), out, progress);
+  line.clear();
+  if (!options.quiet)
+    for (const record::Event& event : run.adaptations()) fmt::print("{}\n", event.text);
   run.solve_without_outages();
   run.run_earlier_passes();
   tbb::parallel_invoke([&run] { run.solve_and_write(); }, [&run] { run.check_lever_arm(); });
   run.offer_gnss_noise();
   run.study_sweep();
   run.separate_forward_and_backward();
+  run.judge();
   const std::string summary = run.write_results();
   line.clear();
-  if (!options.quiet) fmt::print("{}report: {}\n", summary, (out / "report.html").string());
+  if (!options.quiet) fmt::print("{}\n{}report: {}\n", run.verdict().line(), summary, (out / "report.html").string());
+  if (run.verdict().standing() == Standing::kUnusable && !config.accept)
+    throw NumericalError(
+        "the result contradicts its input", "",
+        run.verdict().line() + ". Everything was written, marked as unusable; `accept: true` takes it as it is");
 }
 
 }  // namespace coast::cli

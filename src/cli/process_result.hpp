@@ -11,6 +11,7 @@
 #include "coast/study/comparison.hpp"
 #include "coast/study/outage.hpp"
 #include "coast/study/solution.hpp"
+#include "verdict.hpp"
 
 namespace coast::cli {
 
@@ -93,6 +94,7 @@ struct ProcessResult {
   std::optional<estimate::NoiseFit> noise_fit;
   std::vector<StateTrack> states;
   std::optional<estimate::BatchReport> batch;
+  Judgement verdict;
   record::Events events;
 };
 

@@ -40,28 +40,31 @@ GivenStart start_from(const Node& node) {
   return start;
 }
 
-// `noise: stated | estimated | {the values}`; true: to be estimated.
-bool noise_is_estimated(const Node& parent, const std::function<void(const Node&)>& given) {
+enum class NoiseKey { kStated, kEstimated, kAdapted };
+
+// `noise: stated | estimated | adapted | {the values}`; values are stated ones.
+NoiseKey noise_key(const Node& parent, const std::function<void(const Node&)>& given) {
   const auto node = parent.find("noise");
-  if (!node) return parent.choice("noise", {"stated", "estimated"}, 0) == 1;
-  if (node->is_map()) {
+  if (node && node->is_map()) {
     given(*node);
-    return false;
+    return NoiseKey::kStated;
   }
-  return parent.choice("noise", {"stated", "estimated"}, 0) == 1;
+  return static_cast<NoiseKey>(parent.choice("noise", {"stated", "estimated", "adapted"}, 2));
 }
 
 void read_imu_noise(const Node& imu, study::Setup& setup, estimate::NoiseFitChoice& choice) {
-  choice.imu_white_noise = noise_is_estimated(imu, [&](const Node& given) {
+  const NoiseKey key = noise_key(imu, [&](const Node& given) {
     estimate::NoiseAdjustment factors;
     factors.gyro_factor = given.number_within("gyro_factor", 1.0, 1e-3, 1e4);
     factors.accel_factor = given.number_within("accel_factor", 1.0, 1e-3, 1e4);
     setup.model = estimate::adjusted(setup.model, factors);
   });
+  choice.imu_white_noise = key == NoiseKey::kEstimated;
+  setup.unstated.noise.imu_white_noise = key == NoiseKey::kAdapted;
 }
 
 void read_gnss_noise(const Node& gnss, study::Setup& setup, estimate::NoiseFitChoice& choice) {
-  choice.gnss_scale = noise_is_estimated(gnss, [&](const Node& given) {
+  const NoiseKey key = noise_key(gnss, [&](const Node& given) {
     estimate::GnssScale& scale = setup.filter.gnss_scale;
     scale.horizontal = given.number_within("scale_horizontal", 1.0, 1e-3, 1e4);
     scale.vertical = given.number_within("scale_vertical", 1.0, 1e-3, 1e4);
@@ -71,7 +74,8 @@ void read_gnss_noise(const Node& gnss, study::Setup& setup, estimate::NoiseFitCh
     correlated.vertical_m = given.number_within("correlated_vertical_m", 0.0, 0.0, 1e3);
     correlated.time_s = given.number_within("correlated_time_s", 60.0, 1e-2, 1e5);
   });
-  choice.correlated_gnss = choice.gnss_scale;
+  choice.gnss_scale = choice.correlated_gnss = key == NoiseKey::kEstimated;
+  setup.unstated.noise.gnss_scale = setup.unstated.noise.correlated_gnss = key == NoiseKey::kAdapted;
 }
 
 void read_vehicle(const Node& root, study::Setup& setup) {
@@ -188,6 +192,11 @@ void read_imu(const Node& imu, RunConfig& run, estimate::NoiseFitChoice& choice)
     run.members = members->path();
   }
   run.setup.lever_arm_b = imu.at("lever_arm_m").vector3();
+  constexpr double kLongestArm = 50.0;  // m: a ship's; centimetres and millimetres of a car's are beyond
+  if (run.setup.lever_arm_b.norm() > kLongestArm && !run.accept)
+    throw imu.at("lever_arm_m")
+        .error(fmt::format("a lever arm of {:.0f} m", run.setup.lever_arm_b.norm()), "metres from the IMU to the antenna",
+               "Centimetres or millimetres? `accept: true` takes it as it is.");
   run.setup.filter.auxiliary.lever_arm_sd_m = imu.number_within("lever_arm_sd_m", 0.0, 0.0, 100.0);
   run.setup.high_order_compensation = imu.choice("compensation", {"two_sample", "chebyshev"}, 0) == 1;
   read_imu_noise(imu, run.setup, choice);
@@ -207,6 +216,7 @@ void read_gnss(const Node& gnss, RunConfig& run, estimate::NoiseFitChoice& choic
     throw gnss.at("coupling")
         .error("tight coupling with a moving base", "a base at rest, or coupling: loose",
                "Where a moving base is, is known to metres only.");
+  run.setup.unstated.time_offset = !gnss.find("time_offset_s");
   run.setup.time_offset_s = gnss.number_within("time_offset_s", 0.0, -100.0, 100.0);
   run.setup.filter.auxiliary.time_offset_sd_s = gnss.number_within("time_offset_sd_s", 0.0, 0.0, 10.0);
   run.setup.filter.auxiliary.base_offset_sd_m = gnss.number_within("base_offset_sd_m", 0.0, 0.0, 1e4);
@@ -216,6 +226,7 @@ void read_gnss(const Node& gnss, RunConfig& run, estimate::NoiseFitChoice& choic
                "Tight coupling takes the base's position as it is given.");
   run.setup.filter.use_gnss_velocity = gnss.flag("use_velocity", true);
   read_gnss_noise(gnss, run.setup, choice);
+  if (run.tight) run.setup.unstated = {};  // fixes prepare the start alone
   if (run.tight && choice.gnss_scale)
     throw gnss.at("noise").error("noise of fixes that a tightly coupled run does not use", "no `noise` here",
                                  "The noise of the observations is estimated by `ppk`.");
@@ -251,6 +262,7 @@ RunConfig read_run_config(const std::filesystem::path& file) {
   run.root = io::load_yaml(file);
   const Node& root = run.root;
   static_cast<void>(root.text("schema", "coast.run/1"));
+  run.accept = root.flag("accept", false);
   estimate::NoiseFitChoice choice;
   read_imu(root.at("imu"), run, choice);
   read_gnss(root.at("gnss"), run, choice);

@@ -61,6 +61,7 @@ struct RunConfig {
   bool smooth = true;
   bool combined = false;  ///< smoothed as forward and backward filter combined
   OutputOptions output;
+  bool accept = false;  ///< a result that fails its checks is delivered with exit status 0
 };
 
 /// @throws InputError  anything missing, out of range or unknown, with file and line

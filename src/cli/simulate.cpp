@@ -85,6 +85,16 @@ void write_array(const simulate::Scenario& scenario, const std::filesystem::path
   io::write_text(out / "array.yaml", text);
 }
 
+std::vector<std::string> files_of(const simulate::Scenario& scenario) {
+  std::vector<std::string> files{"imu.csv", "gnss.pos", "truth.nav", "error_model.yaml", "run.yaml"};
+  if (scenario.observations) files.insert(files.end(), {"rover.obs", "base.obs", "brdc.nav", "run-rinex.yaml"});
+  if (scenario.array.empty()) return files;
+  for (const simulate::Scenario::ArrayImu& imu : scenario.array)
+    files.insert(files.end(), {fmt::format("imu_{}.csv", imu.name), fmt::format("error_model_{}.yaml", imu.name)});
+  files.emplace_back("array.yaml");
+  return files;
+}
+
 }  // namespace
 
 void simulate(const std::filesystem::path& scenario_yaml, std::optional<std::uint64_t> seed, const CommonOptions& options) {
@@ -94,7 +104,7 @@ void simulate(const std::filesystem::path& scenario_yaml, std::optional<std::uin
   if (!scenario.error_model)
     throw InputError({scenario_yaml.string(), 0, "a scenario without imu.error_model", "an error model",
                       "The recording would have no run.yaml that processes it."});
-  const std::filesystem::path out = output_folder(scenario_yaml, options.out);
+  const std::filesystem::path out = output_folder(scenario_yaml, options.out, files_of(scenario));
   const auto threads = tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism);
   const coast::simulate::SimulatedMission mission = coast::simulate::simulate(scenario, static_cast<int>(threads));
   io::write_imu_csv(out / "imu.csv", mission.imu);

@@ -104,6 +104,19 @@ Json separation_json(const std::vector<Separation>& separations) {
   return j;
 }
 
+Json verdict_json(const Judgement& verdict) {
+  Json j{{"standing", name(verdict.standing())}, {"accepted", verdict.accepted}};
+  if (!verdict.likely_cause.empty()) j["likely_cause"] = verdict.likely_cause;
+  j["checks"] = Json::array();
+  for (const Check& check : verdict.checks) {
+    Json c{{"name", check.name}, {"standing", name(check.standing())}, {"value", check.value}, {"good_up_to", check.good}};
+    if (check.usable) c["usable_up_to"] = *check.usable;
+    c["text"] = check.text;
+    j["checks"].push_back(std::move(c));
+  }
+  return j;
+}
+
 }  // namespace
 
 std::string gnss_left(const study::Outage& outage) {
@@ -131,6 +144,7 @@ NisSummary nis_of(const std::vector<estimate::InnovationRecord>& innovations) {
 std::string summary_json(const ProcessResult& result) {
   Json j;
   j["schema"] = "coast.summary/1";
+  j["verdict"] = verdict_json(result.verdict);
   j["imu"] = {{"samples", result.imu_samples}, {"rate_hz", result.imu_rate_hz}, {"gaps", result.imu_gaps}};
   j["gnss"] = {{"epochs", result.gnss_epochs}, {"used", result.gnss_used}, {"rejected", result.gnss_rejected}};
   if (result.nis.epochs > 0)

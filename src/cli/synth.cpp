@@ -7,6 +7,7 @@
 #include "coast/array/extended.hpp"
 #include "coast/array/resample.hpp"
 #include "coast/io/member_blocks.hpp"
+#include "coast/io/results_folder.hpp"
 #include "coast/io/writers.hpp"
 #include "coast/record/error.hpp"
 #include "coast/report/render.hpp"
@@ -144,12 +145,21 @@ void write_results(const ArrayConfig& config, const SynthResult& result, const s
   io::write_text(out / "report.html", report::render(page));
 }
 
+std::vector<std::string> files_of(const ArrayConfig& config) {
+  std::vector<std::string> files{"imu.csv",     "noise.csv",  "error_model.yaml", "synth.json", "array.resolved.yaml",
+                                 "report.json", "report.html"};
+  if (config.merge.merge == array::Merge::kExtended) files.emplace_back("members.csv");
+  return files;
+}
+
 }  // namespace
 
 void synth(const std::filesystem::path& array_yaml, const CommonOptions& options) {
   ProgressLine line(options.quiet);
   const ArrayConfig config = read_array_config(array_yaml);
-  const std::filesystem::path out = output_folder(array_yaml, options.out);
+  for (const ArrayImu& imu : config.imus)  // those of an earlier job of coast's, too, are refused before they are read
+    std::visit([](const auto& recording) { io::note_read(recording.file); }, imu.file);
+  const std::filesystem::path out = output_folder(array_yaml, options.out, files_of(config));
   SynthResult result;
   try {
     const std::vector<record::ImuRecording> recordings = read_imus(config, result, line);

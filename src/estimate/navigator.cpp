@@ -2,6 +2,7 @@
 
 #include <Eigen/LU>
 
+#include "coast/geo/earth.hpp"
 #include "coast/ins/compensation.hpp"
 
 namespace coast::estimate {
@@ -49,6 +50,16 @@ void Navigator::refresh_corrections() {
 
 ins::RawIncrement Navigator::without_errors(const ins::RawIncrement& raw) const {
   return {raw.dt, gyro_inverse_ * raw.dtheta - raw.dt * gyro_offset_, accel_inverse_ * raw.dv - raw.dt * accel_offset_};
+}
+
+// dv_e/dt = C_b_e f + g - 2 omega_ie x v = 0        Groves (2013, 2nd ed.) eq. (5.36)
+ins::RawIncrement Navigator::coasting(double dt) const {
+  const Eigen::Matrix3d C_e_b = strapdown_.C_b_e().transpose();
+  const Eigen::Vector3d omega_ie_e(0.0, 0.0, strapdown_.earth_rate());
+  const Eigen::Vector3d force_e = 2.0 * omega_ie_e.cross(nav().v_eb_e) - geo::gravity_e(nav().r_eb_e);
+  const Eigen::Vector3d omega_b = C_e_b * omega_ie_e;
+  return {dt, dt * gyro_inverse_.partialPivLu().solve(omega_b + gyro_offset_),
+          dt * accel_inverse_.partialPivLu().solve(C_e_b * force_e + accel_offset_)};
 }
 
 // How an increment is shared out is judged by how it differs from the one before, both freed of errors: beside a corrected

@@ -305,6 +305,10 @@ NoiseFit fit_noise(const Mission& mission, const noise::ImuErrorModel& model, co
   for (int round = 0; round < 2; ++round) {
     const Objective objective(cleaned, model, options, parameters, from, start);
     theta = minimise(objective, theta, progress);
+    if (!choice.to_the_optimum) {
+      fit.adjustment = objective.at(theta);
+      break;
+    }
     const Eigen::MatrixXd hessian = polish(objective, theta);
     fit.adjustment = objective.at(theta);
     describe(objective, {options.gnss_scale, options.auxiliary.correlated_gnss}, hessian, fit);

@@ -1,5 +1,9 @@
 #include "propagation.hpp"
 
+#include <algorithm>
+
+#include "coast/geo/earth.hpp"
+
 namespace coast::estimate {
 
 namespace {
@@ -7,6 +11,19 @@ namespace {
 // What is not known of the motion while IMU samples are missing: constant errors of the bridged rate and specific force.
 constexpr double kGapRateSd = 0.3;   // rad/s
 constexpr double kGapForceSd = 3.0;  // m/s^2
+// However long the gap, a land, sea or air vehicle comes out of it near level and at a speed of its kind. The heading may be
+// any; the filter is linear, and does not gain by more than this.
+constexpr double kGapTiltMax = 0.25;      // rad
+constexpr double kGapHeadingMax = 1.0;    // rad
+constexpr double kGapVelocityMax = 30.0;  // m/s
+constexpr double kLongGap = 1.0;          // s
+
+// Adds variance along N, E and D, to at most the bound of each axis.
+void add_bounded(Eigen::Ref<Eigen::MatrixXd> P, const Eigen::Matrix3d& C_n_e, double added, const Eigen::Vector3d& largest_sd) {
+  const Eigen::Vector3d now = (C_n_e.transpose() * P * C_n_e).diagonal();
+  const Eigen::Vector3d room = (largest_sd.cwiseAbs2() - now).cwiseMax(0.0);
+  P += C_n_e * room.cwiseMin(added).asDiagonal() * C_n_e.transpose();
+}
 
 }  // namespace
 
@@ -61,8 +78,9 @@ void Propagation::add_gap_noise(Eigen::MatrixXd& P) {
   if (gap_ == 0.0) return;
   const double psi = kGapRateSd * gap_;
   const double v = kGapForceSd * gap_;
-  P.diagonal().segment<3>(kPsi).array() += psi * psi;
-  P.diagonal().segment<3>(kVel).array() += v * v;
+  const Eigen::Matrix3d C_n_e = geo::C_n_e(geo::geodetic_from_ecef(navigator_.nav().r_eb_e));
+  add_bounded(P.block<3, 3>(kPsi, kPsi), C_n_e, psi * psi, {kGapTiltMax, kGapTiltMax, kGapHeadingMax});
+  add_bounded(P.block<3, 3>(kVel, kVel), C_n_e, v * v, Eigen::Vector3d::Constant(kGapVelocityMax));
   P.diagonal().segment<3>(kPos).array() += 0.25 * v * v * gap_ * gap_;
   gap_ = 0.0;
 }
@@ -71,6 +89,10 @@ void Propagation::close(Eigen::MatrixXd& P) {
   fold();
   transition_.propagate_covariance(P);
   add_gap_noise(P);
+}
+
+bool is_long_gap(const record::ImuRecording& imu, double span) {
+  return span - 1.0 / imu.rate_hz > kLongGap;
 }
 
 double missing_share(const record::ImuRecording& imu, double span) {

@@ -12,6 +12,9 @@ namespace coast::estimate {
 /// Instants closer than this are one: IMU and GNSS tags carry rounding of microseconds at best.
 inline constexpr double kTimeTolerance = 2e-6;
 
+/// A gap over which rates and specific forces at its ends tell nothing of the motion in it.
+[[nodiscard]] bool is_long_gap(const record::ImuRecording& imu, double span);
+
 /// Where in the recording a walk through it stands.
 struct SampleCursor {
   std::size_t next_sample = 0;
@@ -27,7 +30,7 @@ struct SampleStep {
 };
 
 /// Goes through the samples up to `end`, or to where they end. `take` is called with each step, propagates the navigator and
-/// sets its time.
+/// sets its time. Where samples are missing for long, a constant velocity and attitude take the place of what was recorded.
 template <class Take>
 void walk(const record::ImuRecording& imu, SampleCursor& cursor, geo::GpsTime end, const Navigator& navigator,
           const Take& take) {
@@ -35,6 +38,7 @@ void walk(const record::ImuRecording& imu, SampleCursor& cursor, geo::GpsTime en
     const geo::GpsTime now = navigator.nav().t;
     const record::ImuSample& sample = imu.samples[cursor.next_sample];
     SampleStep step{increment_from(imu, cursor.next_sample, cursor.remainder, now), sample.t, true, {}};
+    if (is_long_gap(imu, sample.dt)) step.raw = navigator.coasting(step.raw.dt);
     if (cursor.remainder.dt == 0.0) step.span = sample.t - now;
     cursor.remainder.dt = 0.0;
     if (end - now < step.raw.dt - kTimeTolerance) {

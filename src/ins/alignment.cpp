@@ -18,6 +18,8 @@
 namespace coast::ins {
 namespace {
 
+constexpr double kShortGap = 0.1;                       // s: samples missing for less turn a body by little
+constexpr double kGapRateSd = 0.3;                      // rad/s, of what turns it meanwhile
 constexpr double kGoodHeading = 1.0 * geo::kDegree;     // the search for a better window ends
 constexpr double kFairHeading = 5.0 * geo::kDegree;     // taken where `kPatience` brought none better
 constexpr double kPatience = 60.0;                      // s
@@ -146,6 +148,14 @@ std::size_t sample_after(const record::ImuRecording& imu, geo::GpsTime t) {
   return static_cast<std::size_t>(at - imu.samples.begin());
 }
 
+// Seconds that nothing measured in samples [first, end).
+double missing_seconds(const record::ImuRecording& imu, std::size_t first, std::size_t end) {
+  double missing = 0.0;
+  for (std::size_t i = first; i < end; ++i)
+    if (imu.samples[i].dt > 1.5 / imu.rate_hz + kShortGap) missing += imu.samples[i].dt;
+  return missing;
+}
+
 // Heading at the start of sample `at` from the first stretch of motion behind it that shows it well, or the best there is.
 std::optional<Heading> heading_from_motion(const AlignmentInput& input, const Span& span, std::size_t at,
                                            const Eigen::Vector3d& gyro_bias, double gyro_bias_sd, bool vehicle_forward) {
@@ -159,6 +169,7 @@ std::optional<Heading> heading_from_motion(const AlignmentInput& input, const Sp
       const std::size_t first = sample_after(input.imu, t_at + from + 1e-6);
       const std::size_t end = sample_after(input.imu, std::min(span.end, t_at + from + length));
       if (end <= first + 1 || samples[end - 1].t - samples[first].t < 0.5 * length) break;
+      if (missing_seconds(input.imu, first, end) > 0.0) break;
       const auto match = match_specific_force({input.imu, input.gnss, first, end - 1, input.lever_arm_b, gyro_bias,
                                                gyro_bias_sd, nearby, accel_bias_sd(input), vehicle_forward});
       if (!match) continue;
@@ -169,7 +180,8 @@ std::optional<Heading> heading_from_motion(const AlignmentInput& input, const Sp
       heading.window_s = samples[end - 1].t - samples[first].t;
       heading.C_b_n = C_e_n * carried_back(input, match->C_b_e, first, at, match->gyro_bias);
       const double carried_s = samples[first].t - samples[at].t;
-      const double carried = std::pow(match->gyro_bias_sd * carried_s, 2) + std::pow(input.gyro_noise_density, 2) * carried_s;
+      const double carried = std::pow(match->gyro_bias_sd * carried_s, 2) + std::pow(input.gyro_noise_density, 2) * carried_s +
+                             std::pow(kGapRateSd * missing_seconds(input.imu, at, first), 2);
       heading.sd_n = ((C_e_n * match->psi_covariance_e * C_e_n.transpose()).diagonal().array() + carried).sqrt();
       heading.gyro_bias = match->gyro_bias;
       heading.accel_bias = match->accel_bias;

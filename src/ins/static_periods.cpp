@@ -26,19 +26,23 @@ struct Block {
   std::size_t last = 0;  // inclusive
   Eigen::Vector3d force = Eigen::Vector3d::Zero();
   Eigen::Vector3d rate = Eigen::Vector3d::Zero();
+  bool bridged = false;  ///< a gap of the recording: what is in it was not measured
 };
 
-std::vector<Block> block_means(const std::vector<record::ImuSample>& samples) {
+// A sample that bridges a gap is a block of its own, however long; so is every sample of an IMU slower than 2 Hz.
+std::vector<Block> block_means(const std::vector<record::ImuSample>& samples, double rate_hz) {
+  const double longest = 1.5 / rate_hz + 0.1;  // s
   std::vector<Block> blocks;
   for (std::size_t i = 0; i < samples.size();) {
-    Block block{i, i, Eigen::Vector3d::Zero(), Eigen::Vector3d::Zero()};
+    Block block{i, i, Eigen::Vector3d::Zero(), Eigen::Vector3d::Zero(), samples[i].dt > longest};
     double length = 0.0;
-    for (; i < samples.size() && length < kBlock - 0.5 * samples[i].dt; ++i) {
+    do {
       length += samples[i].dt;
       block.force += samples[i].dv;
       block.rate += samples[i].dtheta;
       block.last = i;
-    }
+      ++i;
+    } while (!block.bridged && i < samples.size() && samples[i].dt <= longest && length < kBlock - 0.5 * samples[i].dt);
     block.force /= length;
     block.rate /= length;
     blocks.push_back(block);
@@ -97,6 +101,7 @@ void exclude_gnss_motion(const std::vector<record::ImuSample>& samples, const st
   }
 }
 
+// Time between two samples that neither of them covers.
 bool missing_time(const std::vector<record::ImuSample>& samples, std::size_t i) {
   return (samples[i].t - samples[i - 1].t) > 1.5 * samples[i].dt + 0.1;
 }
@@ -108,7 +113,7 @@ std::vector<StaticPeriod> find_static_periods(const record::ImuRecording& body, 
   const std::vector<record::ImuSample>& samples = body.samples;
   std::vector<StaticPeriod> periods;
   if (samples.empty()) return periods;
-  const std::vector<Block> blocks = block_means(samples);
+  const std::vector<Block> blocks = block_means(samples, body.rate_hz);
   std::vector<double> force_spread, rate_spread;
   for (std::size_t i = 0; i < blocks.size(); ++i) {
     const Spread spread = spread_around(blocks, i);
@@ -122,8 +127,8 @@ std::vector<StaticPeriod> find_static_periods(const record::ImuRecording& body, 
 
   std::vector<bool> still(blocks.size());
   for (std::size_t i = 0; i < blocks.size(); ++i)
-    still[i] = force_spread[i] < force_bound && rate_spread[i] < rate_bound && blocks[i].rate.norm() < kMaxRate &&
-               std::abs(blocks[i].force.norm() - gravity) < kMaxForceError;
+    still[i] = !blocks[i].bridged && force_spread[i] < force_bound && rate_spread[i] < rate_bound &&
+               blocks[i].rate.norm() < kMaxRate && std::abs(blocks[i].force.norm() - gravity) < kMaxForceError;
   if (has_fixes) exclude_gnss_motion(samples, blocks, *gnss, still);
 
   // Runs of still blocks whose means stay where the run began: a slow turn or tilt ends it.

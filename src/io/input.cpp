@@ -10,6 +10,7 @@
 #include <cstring>
 #include <utility>
 
+#include "coast/io/results_folder.hpp"
 #include "coast/record/error.hpp"
 
 namespace coast::io {
@@ -20,6 +21,9 @@ namespace fs = std::filesystem;
 
 constexpr std::size_t kBlock = std::size_t{1} << 18;
 constexpr std::size_t kMaxLine = std::size_t{1} << 20;
+// Tables of numbers compress by less than 20, gzip of one repeated byte by 1000.
+constexpr std::uint64_t kMaxExpansion = 200;
+constexpr std::uint64_t kFreeExpansion = std::uint64_t{64} << 20;  // bytes that any file may expand to
 
 [[noreturn]] void refuse(const std::string& name, std::string found, std::string expected, std::string what_to_do) {
   throw InputError({name, 0, std::move(found), std::move(expected), std::move(what_to_do)});
@@ -66,6 +70,7 @@ ByteSource::ByteSource(const fs::path& path) : handle_(std::make_unique<Handle>(
   handle_->file = gzopen(path.c_str(), "rb");
   if (handle_->file == nullptr) refuse(name_, fmt::format("cannot be opened: {}", std::strerror(errno)), "", "");
   gzbuffer(handle_->file, static_cast<unsigned>(kBlock));
+  note_read(path);
   expected_size_ = uncompressed_size(path);
 }
 
@@ -76,7 +81,8 @@ ByteSource& ByteSource::operator=(ByteSource&&) noexcept = default;
 std::size_t ByteSource::read(char* to, std::size_t size) {
   std::size_t done = 0;
   while (done < size) {
-    const auto chunk = static_cast<unsigned>(std::min(size - done, std::size_t{1} << 30));
+    // Not more at once: a file that expands without end is to be seen early.
+    const auto chunk = static_cast<unsigned>(std::min(size - done, std::size_t{16} << 20));
     const int n = gzread(handle_->file, to + done, chunk);
     int status = Z_OK;
     const char* text = gzerror(handle_->file, &status);
@@ -86,8 +92,18 @@ std::size_t ByteSource::read(char* to, std::size_t size) {
              "a whole file", "Copy or download the file again.");
     if (n == 0) break;
     done += static_cast<std::size_t>(n);
+    given_ += static_cast<std::uint64_t>(n);
+    require_plausible_expansion();
   }
   return done;
+}
+
+void ByteSource::require_plausible_expansion() const {
+  if (given_ <= kFreeExpansion) return;
+  const auto compressed = static_cast<std::uint64_t>(std::max<z_off_t>(gzoffset(handle_->file), 1));
+  if (given_ > kMaxExpansion * compressed)
+    refuse(name_, fmt::format("{} MiB of gzip expand to more than {} MiB", (compressed >> 20) + 1, given_ >> 20),
+           fmt::format("at most {} times the size", kMaxExpansion), "Unpack the file and look at it: is it one of numbers?");
 }
 
 std::string read_head(const fs::path& path, std::size_t size) {
@@ -97,8 +113,13 @@ std::string read_head(const fs::path& path, std::size_t size) {
   return text;
 }
 
-std::string read_all(const fs::path& path) {
+std::string read_all(const fs::path& path, std::uint64_t most) {
   ByteSource source(path);
+  const auto require_within = [&](std::uint64_t size) {
+    if (size > most)
+      refuse(path.string(), fmt::format("more than {} MiB", most >> 20), "a smaller file", "Is this the right file?");
+  };
+  require_within(source.expected_size());
   std::string text;
   // One byte more than expected, so that the end is seen without a second growth.
   std::size_t size = std::max<std::size_t>(static_cast<std::size_t>(source.expected_size()) + 1, 4096);
@@ -107,6 +128,7 @@ std::string read_all(const fs::path& path) {
     text.resize(size);
     const std::size_t n = source.read(text.data() + used, size - used);
     used += n;
+    require_within(used);
     if (used < size) break;
     size *= 2;
   }
@@ -163,7 +185,7 @@ void LineReader::cut_at_nul(std::size_t first_new) {
   const auto only_filling = [](const char* p, std::size_t n) {
     return std::all_of(p, p + n, [](char c) { return c == '\0' || c == '\x1a' || c == '\n' || c == '\r'; });
   };
-  bool tail = only_filling(base + nul, end_ - nul);
+  bool tail = nul > 0 && only_filling(base + nul, end_ - nul);
   std::size_t length = end_ - nul;
   std::vector<char> rest(kBlock);
   while (tail) {
@@ -172,7 +194,7 @@ void LineReader::cut_at_nul(std::size_t first_new) {
     tail = only_filling(rest.data(), n);
     length += n;
   }
-  if (!tail || nul == 0)
+  if (!tail)
     throw InputError({name(), line, "binary data (a zero byte)", "text", "Is this the right file, and the right `format:`?"});
   events_.push_back({record::Event::Severity::kWarning, "trailing_garbage",
                      fmt::format("{}:{}: the file ends with {} zero bytes; they were left out", name(), line, length),

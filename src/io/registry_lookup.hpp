@@ -9,6 +9,7 @@
 #include "coast/io/input.hpp"
 #include "coast/io/registry.hpp"
 #include "coast/record/error.hpp"
+#include "file_kind.hpp"
 
 namespace coast::io {
 
@@ -31,6 +32,7 @@ const Format& format_for(const std::filesystem::path& file, const std::string& n
   if (head.path.size() > 3 && head.path.ends_with(".gz")) head.path.resize(head.path.size() - 3);
   for (const Format& f : formats())
     if (f.*reader && f.sniff && f.sniff(head)) return f;
+  refuse_other_kind(file, FileKind::Content::kOther, fmt::format("{} file", what));
   throw InputError({file.string(), 0, fmt::format("not recognised as {} file", what),
                     fmt::format("one of: {}", fmt::join(names, ", ")), "Name the format with `format:`."});
 }

@@ -13,6 +13,7 @@
 
 #include "coast/config/builder.hpp"
 #include "coast/io/input.hpp"
+#include "file_kind.hpp"
 
 namespace coast::io {
 
@@ -182,10 +183,16 @@ config::Node load_yaml(const std::filesystem::path& path) {
     size += got;
   }
   if (size > kMaxBytes) {
+    refuse_other_kind(path, FileKind::Content::kYaml, "a configuration file");
     throw InputError({path.string(), 0, "more than 16 MiB", "a configuration file", "Is this a recording?"});
   }
   text.resize(size);
-  return parse_yaml(text, path.string());
+  try {
+    return parse_yaml(text, path.string());
+  } catch (const InputError&) {
+    refuse_other_kind(path, FileKind::Content::kYaml, "a configuration file");
+    throw;
+  }
 }
 
 }  // namespace coast::io

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "coast/geo/earth.hpp"
 #include "coast/geo/rotation.hpp"
@@ -42,25 +43,177 @@ double largest(const noise::ImuErrorModel& model, noise::Sensor sensor) {
   return value;
 }
 
+// Of the used GNSS innovations; 1 where the noise is as stated.
+double nis_over_expected(const std::vector<estimate::InnovationRecord>& innovations) {
+  double nis = 0.0, dof = 0.0;
+  for (const estimate::InnovationRecord& r : innovations) {
+    if (!r.used || !(estimate::is_position(r.kind) || r.kind == estimate::UpdateKind::kGnssVelocity)) continue;
+    nis += r.nis;
+    dof += r.dof;
+  }
+  return dof > 0.0 ? nis / dof : 1.0;
+}
+
+// Where a gap of the IMU stands between the first epoch and the motion that shows the heading, the alignment begins behind it.
+ins::InitialState align_around_gaps(const ins::AlignmentInput& input, bool vehicle_forward) {
+  constexpr double kGap = 1.0;  // s
+  const auto long_gap = [](const record::ImuSample& sample) { return sample.dt > kGap; };
+  const std::vector<record::ImuSample>& samples = input.imu.samples;
+  auto gap = std::ranges::find_if(samples, long_gap);
+  if (gap == samples.end()) return ins::align(input, vehicle_forward);
+  try {
+    return ins::align(input, vehicle_forward);
+  } catch (const NumericalError&) {
+  }
+  for (; gap != samples.end(); gap = std::find_if(gap + 1, samples.end(), long_gap)) {
+    record::ImuRecording behind = input.imu;
+    behind.samples.assign(gap + 1, samples.end());
+    if (behind.samples.empty()) break;
+    try {
+      return ins::align(
+          {behind, input.gnss, input.lever_arm_b, input.gyro_noise_density, input.gyro_bias_sd, input.accel_bias_sd},
+          vehicle_forward);
+    } catch (const NumericalError&) {
+    }
+  }
+  return ins::align(input, vehicle_forward);  // says why
+}
+
 }  // namespace
 
 PreparedMission::PreparedMission(record::ImuRecording imu, record::GnssRecording gnss, Setup setup, const Progress& progress)
     : imu_(std::move(imu)), gnss_(std::move(gnss)), setup_(std::move(setup)) {
   check_overlap(imu_, gnss_);
   find_standstill();
+  choose_time_offset(progress);
   align(progress);
   if (setup_.high_order_compensation) {
     ins::compensate_chebyshev(imu_);
     mission_->increments = ins::IncrementKind::kCompensated;
   }
   if (!setup_.start) run_back_to_first_epoch();
+  test_time_offset();
+  test_noise();
   if (setup_.noise_fit) {
     fit_and_adopt(progress);
   } else {
     refine_start(progress);
     refine_antenna(progress);
   }
+  note_adaptations();
   mission_->carrier = setup_.carrier.get();
+}
+
+// The filter over the first minutes, as far as the start may look.
+estimate::FilterResult PreparedMission::first_minutes(estimate::FilterOptions options) const {
+  geo::GpsTime end = start_.nav.t + kRefineWindow;
+  if (setup_.refine_before) {
+    end = std::min(end, *setup_.refine_before);
+    options.withheld.push_back({*setup_.refine_before, *setup_.refine_before + kRefineWindow});
+  }
+  const estimate::ForwardFilter filter(*mission_, setup_.model, options);
+  return filter.run_until(start_state(filter), end, {});
+}
+
+// Turns tell a shift of the times to some 0.05 s, and now and then a false one. It is taken where the filter finds the fixes
+// likelier by it; the gate is open, so that both see the same fixes.
+void PreparedMission::choose_time_offset(const Progress& progress) {
+  if (!setup_.unstated.time_offset || setup_.start || setup_.unstated.time_offset_seen_s == 0.0) return;
+  constexpr double kCoarse = 0.4;  // s: the state of the offset finds what is nearer
+  const estimate::FilterOptions stated = setup_.filter;
+  setup_.filter.gate_probability = 0.0;
+  const auto log_likelihood_at = [&](double offset) {
+    setup_.time_offset_s = mission_->time_offset_s = offset;
+    try {
+      align(progress);
+      run_back_to_first_epoch();
+      refine_start(progress);
+      return first_minutes(setup_.filter).log_likelihood;
+    } catch (const NumericalError&) {
+      return -std::numeric_limits<double>::infinity();
+    }
+  };
+  // Between fixes the course is not seen: a neighbouring maximum lies an interval of theirs away.
+  const double seen = setup_.unstated.time_offset_seen_s;
+  const double interval = (gnss_.fixes.back().t - gnss_.fixes.front().t) / static_cast<double>(gnss_.fixes.size());
+  double best = 0.0, most = log_likelihood_at(0.0);
+  for (const double offset : {seen, seen - interval, seen + interval}) {
+    if (offset != seen && interval < kCoarse) break;
+    const double log_likelihood = log_likelihood_at(offset);
+    if (log_likelihood <= most) continue;
+    most = log_likelihood;
+    best = offset;
+  }
+  setup_.filter = stated;
+  setup_.time_offset_s = mission_->time_offset_s = best;
+  start_sensor_errors_.resize(0);
+}
+
+// The filter with the offset as a state. Where noise is stated too small, its sigma and its gain are as much too good as the
+// innovations are too large.
+void PreparedMission::test_time_offset() {
+  constexpr double kPriorSd = 0.5;  // s
+  constexpr double kLeast = 3e-3;   // s: less moves a car by centimetres
+  constexpr double kSigmas = 6.0;
+  constexpr double kLeastGain = 15.0;  // of the log-likelihood
+  double& sd = setup_.filter.auxiliary.time_offset_sd_s;
+  if (!setup_.unstated.time_offset || setup_.start || sd > 0.0) return;
+  estimate::FilterOptions options = setup_.filter;
+  options.gate_probability = 0.0;
+  const estimate::FilterResult without = first_minutes(options);
+  options.auxiliary.time_offset_sd_s = kPriorSd;
+  const estimate::FilterResult with = first_minutes(options);
+  const Eigen::Index at = *estimate::ForwardFilter(*mission_, setup_.model, options).layout().time_offset();
+  const double excess = std::max(1.0, nis_over_expected(with.innovations));
+  const double offset = with.last.x(at);
+  const double offset_sd = std::sqrt(excess * with.last.P(at, at));
+  const bool shown = std::abs(offset) > std::max(kLeast, kSigmas * offset_sd) &&
+                     with.log_likelihood - without.log_likelihood > kLeastGain * excess;
+  if (shown || setup_.time_offset_s != 0.0) sd = std::max(0.1, 2.0 * std::abs(offset));
+}
+
+// Sigmas of innovations that do not fit say that noise is stated wrongly, whatever the data sheet.
+void PreparedMission::test_noise() {
+  constexpr double kSmallest = 0.7, kLargest = 1.4;  // of the normalised innovations squared over their expectation
+  constexpr double kRefused = 0.05;
+  constexpr std::size_t kFewest = 100;
+  const estimate::NoiseFitChoice& choice = setup_.unstated.noise;
+  if (!(choice.gnss_scale || choice.imu_white_noise)) return;
+  const Eigen::VectorXd found = start_sensor_errors_;
+  const ins::InitialState start = start_;
+  refine_start({});
+  const std::vector<estimate::InnovationRecord> seen = first_minutes(setup_.filter).innovations;
+  start_ = start;
+  start_sensor_errors_ = found;
+  const auto refused = static_cast<double>(std::ranges::count(seen, false, &estimate::InnovationRecord::used));
+  const double ratio = nis_over_expected(seen);
+  if (seen.size() < kFewest) return;
+  if (ratio > kSmallest && ratio < kLargest && refused < kRefused * static_cast<double>(seen.size())) return;
+  if (!setup_.noise_fit) setup_.noise_fit = estimate::NoiseFitChoice{false, false, false};
+  setup_.noise_fit->gnss_scale |= choice.gnss_scale;
+  setup_.noise_fit->correlated_gnss |= choice.correlated_gnss;
+  setup_.noise_fit->imu_white_noise |= choice.imu_white_noise;
+  noise_ratio_ = ratio;
+}
+
+void PreparedMission::note_adaptations() {
+  const auto note = [this](const char* kind, std::string text) {
+    adaptations_.push_back({record::Event::Severity::kInfo, kind, std::move(text), std::nullopt, 1});
+  };
+  if (setup_.unstated.time_offset && mission_->time_offset_s != 0.0)
+    note(
+        "time_offset_found",
+        fmt::format("The recording shows a time offset, which the run file does not state: gnss.time_offset_s: {:.4f} is used.",
+                    mission_->time_offset_s));
+  if (!noise_ratio_ || !noise_fit_) return;
+  const estimate::NoiseAdjustment& a = noise_fit_->adjustment;
+  note("noise_adapted",
+       fmt::format(
+           "Squared innovations are {:.2g} times what the stated noise predicts. Fitted and used in its place: gyro noise "
+           "times {:.3g}, accelerometer noise times {:.3g}, GNSS sigmas times {:.3g} horizontally and {:.3g} vertically "
+           "with errors of {:.2g} and {:.2g} m that last {:.2g} s. `noise: stated` keeps what is stated.",
+           *noise_ratio_, a.gyro_factor, a.accel_factor, a.gnss_scale.horizontal, a.gnss_scale.vertical,
+           a.correlated_gnss.horizontal_m, a.correlated_gnss.vertical_m, a.correlated_gnss.time_s));
 }
 
 // Noise comes first: with noise stated far too small neither the gate nor an offset means anything. The second fit starts
@@ -74,10 +227,12 @@ void PreparedMission::fit_and_adopt(const Progress& progress) {
   estimate::NoiseAdjustment from = first;
   const double before_outages = setup_.fit_before ? *setup_.fit_before - start_.nav.t : kFitWindow;
   const double longest = before_outages < kShortestFit ? kFitWindow : std::min(kFitWindow, before_outages);
-  for (const double window : {std::min(kRefineWindow, longest), longest}) {
+  for (const bool last : {false, true}) {
     setup_.model = stated_model;
     setup_.filter = stated;
-    noise_fit_ = fit(*setup_.noise_fit, from, window, progress);
+    estimate::NoiseFitChoice choice = *setup_.noise_fit;
+    choice.to_the_optimum = last;
+    noise_fit_ = fit(choice, from, last ? longest : std::min(kRefineWindow, longest), progress);
     adopt(*noise_fit_);
     // A correlated error that was found to be nothing begins small again: at nothing its gradient vanishes.
     from = noise_fit_->adjustment;
@@ -134,9 +289,11 @@ void PreparedMission::align(const Progress& progress) {
   double density = 0.0;
   for (int axis = 0; axis < 3; ++axis)
     density = std::max(density, std::sqrt(setup_.model.white_density(noise::Sensor::kGyro, axis).value));
-  start_ = ins::align({imu_, gnss_, setup_.lever_arm_b, density, largest(setup_.model, noise::Sensor::kGyro),
-                       largest(setup_.model, noise::Sensor::kAccel)},
-                      setup_.vehicle_forward);
+  record::GnssRecording in_imu_time = gnss_;
+  for (record::GnssFix& fix : in_imu_time.fixes) fix.t = fix.t - setup_.time_offset_s;
+  start_ = align_around_gaps({imu_, in_imu_time, setup_.lever_arm_b, density, largest(setup_.model, noise::Sensor::kGyro),
+                              largest(setup_.model, noise::Sensor::kAccel)},
+                             setup_.vehicle_forward);
 }
 
 estimate::FilterState PreparedMission::start_state(const estimate::ForwardFilter& filter) const {

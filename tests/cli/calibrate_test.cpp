@@ -161,6 +161,22 @@ seed: 4
   EXPECT_EQ(processed.status, 0) << processed.error;
 }
 
+TEST(Calibrate, TwoRunsWriteTheSameBytes) {
+  const test::TemporaryDirectory folder;
+  write(folder.path() / "one.csv", simulated_csv(5));
+  write(folder.path() / "calibration.yaml",
+        "schema: coast.calibration_run/1\naxes: [gyro_x, accel_x]\nrealisations: 0\nrecords:\n  - {file: one.csv}\n"
+        "processes: {gyro: {sum: [white_noise]}, accel: {sum: [white_noise]}}\n");
+  for (const char* out : {"first", "second"}) {
+    const Outcome outcome = run(
+        fmt::format("calibrate '{}' --out '{}'", (folder.path() / "calibration.yaml").string(), (folder.path() / out).string()),
+        folder.path());
+    ASSERT_EQ(outcome.status, 0) << outcome.error;
+  }
+  for (const char* file : {"calibration.json", "error_model.yaml", "report.json"})
+    EXPECT_EQ(text_of(folder.path() / "first" / file), text_of(folder.path() / "second" / file)) << file;
+}
+
 TEST(Calibrate, ReportIsMadeAgainFromStoredResults) {
   const test::TemporaryDirectory folder;
   fs::copy_file(simulated() / "out" / "report.json", folder.path() / "report.json");

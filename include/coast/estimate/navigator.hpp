@@ -29,6 +29,8 @@ class Navigator {
 
   /// One step with an increment as recorded (body axes). @return what the covariance needs of it
   const SampleDynamics& propagate(const ins::RawIncrement& raw);
+  /// What this IMU, with its estimated errors, would record over `dt` at constant velocity and attitude against the Earth.
+  [[nodiscard]] ins::RawIncrement coasting(double dt) const;
   /// The two parts of an increment as recorded that a knot inside it makes.
   /// @param fraction  of its interval, of the first part
   [[nodiscard]] ins::SplitIncrement split(const ins::RawIncrement& raw, double fraction) const;

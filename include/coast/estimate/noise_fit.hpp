@@ -22,6 +22,7 @@ struct NoiseFitChoice {
   bool gnss_scale = true;
   bool correlated_gnss = true;
   bool imu_white_noise = false;
+  bool to_the_optimum = true;  ///< false: a first look, without Newton's steps, deviations and a second round
 };
 
 struct NoiseFit {

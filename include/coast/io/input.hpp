@@ -24,7 +24,7 @@ class ByteSource {
   ByteSource& operator=(ByteSource&&) noexcept;
 
   /// Reads up to `size` bytes; fewer only at the end, 0 when nothing is left.
-  /// @throws InputError  the compressed data are damaged or end early
+  /// @throws InputError  the compressed data are damaged, end early, or expand to more than 64 MiB and 200 times their size
   [[nodiscard]] std::size_t read(char* to, std::size_t size);
 
   [[nodiscard]] const std::string& name() const { return name_; }  ///< as given, for messages
@@ -33,15 +33,19 @@ class ByteSource {
 
  private:
   struct Handle;
+  void require_plausible_expansion() const;
   std::unique_ptr<Handle> handle_;
   std::string name_;
+  std::uint64_t given_ = 0;
   std::uint64_t expected_size_ = 0;
 };
 
 /// The first `size` decompressed bytes (fewer if the file is shorter), for recognising formats.
 [[nodiscard]] std::string read_head(const std::filesystem::path& path, std::size_t size);
 /// The whole decompressed content: for binary formats and small texts.
-[[nodiscard]] std::string read_all(const std::filesystem::path& path);
+/// @param most  bytes that it may have
+/// @throws InputError  it has more
+[[nodiscard]] std::string read_all(const std::filesystem::path& path, std::uint64_t most = std::uint64_t{16} << 30);
 
 /// Lines of a text in blocks. CR LF and a UTF-8 byte-order mark are taken off. A tail of NUL bytes (a disk that was cut off
 /// while writing) is left out and reported; any other NUL is "binary data" and refused with its line.

@@ -2,6 +2,7 @@
 // Files that coast writes. Each is written under a temporary name beside its own and renamed when whole, so that a crash or a
 // full disk leaves no half file under a final name.
 
+#include <cstdint>
 #include <filesystem>
 #include <memory>
 #include <string>
@@ -17,10 +18,11 @@
 namespace coast::io {
 
 /// A file that appears whole or not at all. Where the target exists and is no regular file (a pipe, a device), it is written
-/// directly.
+/// directly. In a folder of results (results_folder.hpp) it replaces only what coast wrote.
 class AtomicFile {
  public:
   /// @throws OutputError  the folder is missing or not writable; names the path
+  /// @throws InputError   the file is there and is not coast's, or was read by this job
   explicit AtomicFile(const std::filesystem::path& path);
   ~AtomicFile();  ///< removes the temporary file if it was not committed
   AtomicFile(const AtomicFile&) = delete;
@@ -34,10 +36,15 @@ class AtomicFile {
 
  private:
   [[noreturn]] void fail(int error);
+  void remove_part();
   std::filesystem::path path_;
   std::filesystem::path written_;  ///< the temporary name
+  std::uintmax_t size_ = 0;        ///< bytes written
   int descriptor_ = -1;
 };
+
+/// Removes what is half written and ends the process: for a signal, from a thread of its own and not from a handler.
+[[noreturn]] void exit_without_unfinished_files(int status);
 
 /// Writes a whole text at once.
 void write_text(const std::filesystem::path& path, std::string_view text);

@@ -16,6 +16,15 @@ namespace coast::study {
 /// Long work tells how far it is: what is being done, and the fraction of it.
 using Progress = std::function<void(const char* what, double fraction)>;
 
+/// What the configuration leaves to the data.
+struct Unstated {
+  estimate::NoiseFitChoice noise{
+      .gnss_scale = false, .correlated_gnss = false, .imu_white_noise = false};  ///< fitted where innovations contradict it
+  bool time_offset = false;                                                      ///< estimated where the innovations show one
+  double time_offset_seen_s =
+      0.0;  ///< as the turns of IMU and GNSS tell it, to 0.05 s; taken where the filter finds it likelier
+};
+
 /// How a mission is processed; filled from run.yaml.
 struct Setup {
   Eigen::Matrix3d C_s_b = Eigen::Matrix3d::Identity();
@@ -33,6 +42,7 @@ struct Setup {
   /// Noise is fitted to what comes before it, where that is at least 100 s.
   std::optional<geo::GpsTime> fit_before;
   std::optional<estimate::NoiseFitChoice> noise_fit;
+  Unstated unstated;
   /// The delivered solution is smoothed as a batch; outages that are swept and starts that are refined are not.
   std::optional<estimate::BatchOptions> batch;
   /// Tight coupling, of the prepared mission alone: it is prepared with the fixes.
@@ -42,7 +52,8 @@ struct Setup {
 /// A mission in body axes, aligned. Owns its recordings.
 class PreparedMission {
  public:
-  /// Compensates, finds standstill, aligns, fits the noise where the setup asks for it and refines the start: from where
+  /// Compensates, finds standstill, aligns, tests what the setup leaves unstated, fits the noise where the setup asks for it or
+  /// the innovations contradict it, and refines the start: from where
   /// alignment succeeded the filter runs back to the first epoch, then the first minutes are smoothed and the start taken from
   /// there until it rests. A given start is taken as it is.
   /// @throws InputError  IMU and GNSS do not overlap in time  @throws NumericalError  the alignment fails
@@ -56,6 +67,8 @@ class PreparedMission {
   [[nodiscard]] const estimate::FilterOptions& options() const { return setup_.filter; }
   [[nodiscard]] const ins::InitialState& start() const { return start_; }
   [[nodiscard]] const std::optional<estimate::NoiseFit>& noise_fit() const { return noise_fit_; }
+  /// What was taken in place of what the setup leaves unstated, an event each.
+  [[nodiscard]] const record::Events& adaptations() const { return adaptations_; }
   /// The start for a filter of any layout.
   [[nodiscard]] estimate::FilterState start_state(const estimate::ForwardFilter& filter) const;
   /// Takes noise as fitted from here on.
@@ -85,6 +98,11 @@ class PreparedMission {
   void refine_start(const Progress& progress);
   void refine_antenna(const Progress& progress);
   void fit_and_adopt(const Progress& progress);
+  void choose_time_offset(const Progress& progress);
+  void test_time_offset();
+  void test_noise();
+  void note_adaptations();
+  [[nodiscard]] estimate::FilterResult first_minutes(estimate::FilterOptions options) const;
 
   record::ImuRecording imu_;
   record::GnssRecording gnss_;
@@ -93,6 +111,8 @@ class PreparedMission {
   ins::InitialState start_;
   Eigen::VectorXd start_sensor_errors_;  ///< estimated, by the layout of the setup; empty: zero
   std::optional<estimate::NoiseFit> noise_fit_;
+  std::optional<double> noise_ratio_;  ///< squared innovations over their expectation, where that had the noise fitted
+  record::Events adaptations_;
 };
 
 }  // namespace coast::study

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 
+#include "../file_kind.hpp"
 #include "../gnss_table.hpp"
 #include "../imu_table.hpp"
 #include "../reference_table.hpp"
@@ -39,7 +40,7 @@ void default_time(const TableReader& table, TimeOptions& time, std::vector<Colum
   }
 }
 
-record::ImuRecording read_imu_csv(const ImuFileOptions& given, Format::Near near) {
+record::ImuRecording read_imu_columns(const ImuFileOptions& given, Format::Near near) {
   ImuFileOptions o = given;
   TableReader table(o.file);
   default_time(table, o.time, o.time_columns);
@@ -51,7 +52,7 @@ record::ImuRecording read_imu_csv(const ImuFileOptions& given, Format::Near near
   return read_imu_table(table, o, near);
 }
 
-record::GnssRecording read_gnss_csv(const GnssFileOptions& given, Format::Near near) {
+record::GnssRecording read_gnss_columns(const GnssFileOptions& given, Format::Near near) {
   GnssFileOptions o = given;
   TableReader table(o.file);
   default_time(table, o.time, o.time_columns);
@@ -77,6 +78,25 @@ record::Trajectory read_reference_csv(const ReferenceFileOptions& given, Format:
     if (!o.attitude_columns.empty()) o.attitude.form = AttitudeOptions::Form::kEuler;
   }
   return read_reference_table(table, o, near);
+}
+
+// A file that is no table at all is told apart from a spoiled one where reading failed.
+record::ImuRecording read_imu_csv(const ImuFileOptions& given, Format::Near near) {
+  try {
+    return read_imu_columns(given, near);
+  } catch (const InputError&) {
+    refuse_other_kind(given.file, FileKind::Content::kImu, "a table of an IMU");
+    throw;
+  }
+}
+
+record::GnssRecording read_gnss_csv(const GnssFileOptions& given, Format::Near near) {
+  try {
+    return read_gnss_columns(given, near);
+  } catch (const InputError&) {
+    refuse_other_kind(given.file, FileKind::Content::kPositions, "a table of positions");
+    throw;
+  }
 }
 
 }  // namespace

@@ -1,0 +1,211 @@
+#include "verdict.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "coast/geo/earth.hpp"
+#include "coast/geo/units.hpp"
+#include "process_result.hpp"
+
+namespace coast::cli {
+
+const char* name(Standing standing) {
+  static constexpr std::array<const char*, 3> kNames{"good", "doubtful", "unusable"};
+  return kNames[static_cast<std::size_t>(standing)];
+}
+
+Standing Check::standing() const {
+  if (std::isfinite(value) && value <= good) return Standing::kGood;
+  return usable && !(value <= *usable) ? Standing::kUnusable : Standing::kDoubtful;
+}
+
+Standing Judgement::standing() const {
+  Standing worst = Standing::kGood;
+  for (const Check& check : checks) worst = std::max(worst, check.standing());
+  return worst;
+}
+
+std::string Judgement::line() const {
+  std::string text = fmt::format("verdict: {}", name(standing()));
+  if (standing() == Standing::kGood) return text + fmt::format(", {} checks passed", checks.size());
+  const char* separator = ": ";
+  for (const Check& check : checks) {
+    if (check.standing() == Standing::kGood) continue;
+    text += separator + check.text;
+    separator = "; ";
+  }
+  return likely_cause.empty() ? text : fmt::format("{}. Most likely cause: {}", text, likely_cause);
+}
+
+namespace {
+
+constexpr double kLegSeconds = 2.0;  // over these the noise of fixes is a small part of the way
+
+std::vector<const record::GnssFix*> fixes_apart(const record::GnssRecording& gnss) {
+  std::vector<const record::GnssFix*> fixes;
+  for (const record::GnssFix& fix : gnss.fixes)
+    if (fixes.empty() || fix.t - fixes.back()->t >= kLegSeconds - 1e-3) fixes.push_back(&fix);
+  return fixes;
+}
+
+}  // namespace
+
+MotionChecks::MotionChecks(const estimate::Mission& mission) {
+  constexpr double kLongest = 10.0;  // s: farther apart, the way between two fixes may be any
+  constexpr double kShortestRest = 3.0;
+  const std::vector<const record::GnssFix*> fixes = fixes_apart(mission.gnss);
+  for (std::size_t i = 1; i < fixes.size(); ++i) {
+    const record::GnssFix &a = *fixes[i - 1], &b = *fixes[i];
+    if (b.t - a.t > kLongest) continue;
+    const double variance = a.position_cov_n.trace() + b.position_cov_n.trace();
+    legs_.push_back(
+        {a.t - mission.time_offset_s, b.t - mission.time_offset_s, (b.r_ea_e - a.r_ea_e).norm(), std::sqrt(variance)});
+  }
+  for (const estimate::TimeSpan& span : mission.standstill) {
+    if (span.to - span.from < kShortestRest) continue;
+    Eigen::Vector3d dv = Eigen::Vector3d::Zero();
+    double seconds = 0.0;
+    for (const record::ImuSample& s : mission.imu.samples) {
+      if (!span.contains(s.t)) continue;
+      dv += s.dv;
+      seconds += s.dt;
+    }
+    if (seconds > 0.0) rests_.push_back({span.from + 0.5 * (span.to - span.from), dv / seconds});
+  }
+}
+
+void MotionChecks::add(const record::TrajectoryEpoch& epoch) {
+  const record::NavState& nav = epoch.nav;
+  while (leg_ < legs_.size() && legs_[leg_].to <= nav.t) ++leg_;
+  if (last_ && leg_ < legs_.size() && legs_[leg_].from <= nav.t)
+    legs_[leg_].travelled += nav.v_eb_e.norm() * std::min(nav.t - *last_, kLegSeconds);
+  last_ = nav.t;
+  if (rest_ == rests_.size() || nav.t < rests_[rest_].middle) return;
+  const Eigen::Vector3d predicted = -(nav.q_b_e.conjugate() * geo::gravity_e(nav.r_eb_e));
+  Rest& rest = rests_[rest_++];
+  rest.tilt = std::atan2(predicted.cross(rest.f_b).norm(), predicted.dot(rest.f_b));
+}
+
+std::vector<Check> MotionChecks::checks() const {
+  std::vector<Check> checks;
+  double fixes = 0.0, noise = 0.0, seconds = 0.0, solution = 0.0;
+  for (const Leg& leg : legs_) {
+    if (leg.travelled == 0.0) continue;
+    fixes += leg.length;
+    noise += leg.sd;
+    seconds += leg.to - leg.from;
+    solution += leg.travelled;
+  }
+  constexpr double kShake = 0.1;  // m/s: an antenna on its mast moves, a vehicle bounces
+  if (seconds > 0.0) {
+    const double excess =
+        std::max(0.0, std::abs(solution - fixes) - noise - kShake * seconds) / (fixes + noise + kShake * seconds);
+    checks.push_back({"distance_against_gnss", excess, 0.1, 0.4,
+                      fmt::format("the solution travels {:.0f} m where the fixes do {:.0f} m", solution, fixes)});
+  }
+  double tilt = 0.0;
+  bool seen = false;
+  for (const Rest& rest : rests_) {
+    if (!rest.tilt) continue;
+    seen = true;
+    tilt = std::max(tilt, *rest.tilt / geo::kDegree);
+  }
+  if (seen)
+    checks.push_back({"tilt_at_rest_deg", tilt, 3.0, 8.0,
+                      fmt::format("at rest roll and pitch differ by {:.1f} deg from the specific force's", tilt)});
+  return checks;
+}
+
+std::optional<Check> sensor_check(const estimate::StateLayout& layout, const Eigen::VectorXd& x) {
+  const Eigen::VectorXd prior = layout.initial_covariance().diagonal().cwiseSqrt();
+  const Eigen::VectorXd mean = layout.mean(0.0);
+  Check check{"sensor_errors_over_prior", 0.0, 5.0, 20.0};
+  bool any = false;
+  for (const auto& block : layout.sensors())
+    for (int i = block.offset; i < block.offset + block.size; ++i) {
+      if (!(prior(i) > 0.0)) continue;
+      any = true;
+      const double sigmas = std::abs(x(i) - mean(i)) / prior(i);
+      if (sigmas <= check.value) continue;
+      check.value = sigmas;
+      check.text = fmt::format("{} is {:.0f} sigmas from what the error model allows", block.name, sigmas);
+    }
+  return any ? std::optional(check) : std::nullopt;
+}
+
+namespace {
+
+double quantile(std::vector<double> values, double p) {
+  const auto nth = values.begin() + static_cast<std::ptrdiff_t>(p * static_cast<double>(values.size() - 1));
+  std::nth_element(values.begin(), nth, values.end());
+  return *nth;
+}
+
+// Most of the mission: at its ends one of the two filters has hardly begun.
+void add_separation(const ProcessResult& result, std::vector<Check>& checks) {
+  constexpr double kMost = 0.7;
+  if (result.separations.empty()) return;
+  std::vector<double> tilt, position;
+  for (const Separation& s : result.separations) {
+    tilt.push_back(std::max(std::abs(s.attitude.x()), std::abs(s.attitude.y())) / geo::kDegree);
+    position.push_back(s.position_n.norm() / std::max(s.sd_position.norm(), 1e-9));
+  }
+  const double degrees = quantile(tilt, kMost), sigmas = quantile(position, kMost);
+  checks.push_back({"tilt_separation_deg", degrees, 2.0, 8.0,
+                    fmt::format("forward and backward filter differ by {:.1f} deg in roll or pitch", degrees)});
+  checks.push_back({"position_separation_over_sigma",
+                    sigmas,
+                    4.0,
+                    {},
+                    fmt::format("forward and backward positions differ by {:.1f} times their sigma", sigmas)});
+}
+
+void add_innovations(const ProcessResult& result, std::vector<Check>& checks) {
+  const std::size_t offered = result.gnss_used + result.gnss_rejected;
+  if (offered > 0) {
+    const double refused = static_cast<double>(result.gnss_rejected) / static_cast<double>(offered);
+    checks.push_back({"fixes_refused", refused, 0.08, 0.25,
+                      fmt::format("{} of {} fixes contradict the filter and were refused", result.gnss_rejected, offered)});
+  }
+  if (result.nis.epochs == 0 || !(result.nis.expected > 0.0)) return;
+  const double ratio = result.nis.mean / result.nis.expected;
+  checks.push_back({"innovations_squared_over_expected", ratio, 2.0, 6.0,
+                    fmt::format("squared innovations are {:.2g} times what the stated sigmas predict", ratio)});
+}
+
+void add_noise_fit(const ProcessResult& result, std::vector<Check>& checks) {
+  if (!result.noise_fit) return;
+  constexpr double kHighest = 999.0;
+  const double largest = std::max(result.noise_fit->adjustment.gyro_factor, result.noise_fit->adjustment.accel_factor);
+  checks.push_back(
+      {"imu_noise_factor", largest, kHighest, {}, fmt::format("the fit of the IMU noise ends on its bound, {:.0f}", largest)});
+}
+
+const record::Event* find(const record::Events& events, std::string_view kind) {
+  const auto found = std::ranges::find(events, kind, &record::Event::kind);
+  return found == events.end() ? nullptr : &*found;
+}
+
+// Mistakes in the order in which each hides the ones behind it.
+std::string likely_cause(const ProcessResult& result) {
+  for (const char* kind : {"specific_force_size", "gravity_sign", "gravity_axis", "gyro_sign", "gyro_unit", "leap_second_shift",
+                           "time_shift", "lever_arm_contradicted", "travel_direction", "gnss_sigmas_do_not_fit"})
+    if (const record::Event* event = find(result.events, kind)) return event->text;
+  return "";
+}
+
+}  // namespace
+
+Judgement judge(const ProcessResult& result, std::vector<Check> motion) {
+  Judgement judgement{std::move(motion)};
+  add_innovations(result, judgement.checks);
+  add_separation(result, judgement.checks);
+  add_noise_fit(result, judgement.checks);
+  if (judgement.standing() != Standing::kGood) judgement.likely_cause = likely_cause(result);
+  return judgement;
+}
+
+}  // namespace coast::cli
