@@ -376,7 +376,8 @@ void ProcessRun::note_estimates() const {
   const estimate::NoiseFitChoice& choice = *mission_.setup().noise_fit;
   if (choice.imu_white_noise)
     config_.root.at("imu").note_estimated(
-        "noise", fmt::format("{{gyro_factor: {:.17g}, accel_factor: {:.17g}}}", a.gyro_factor, a.accel_factor));
+        "noise", fmt::format("{{gyro_factor: {:.17g}, accel_factor: {:.17g}{}}}", a.gyro_factor, a.accel_factor,
+                             mission_.gain_errors_left_out() ? ", without_gain_errors: true" : ""));
   if (choice.gnss_scale)
     config_.root.at("gnss").note_estimated(
         "noise",
@@ -428,7 +429,9 @@ void process(const std::filesystem::path& run_yaml, const CommonOptions& options
 
   const RunConfig config = read_run_config(run_yaml);
   Recordings recordings = load(config, [&line](double share) { line.show("solving GNSS positions", share); });
-  const std::filesystem::path out = output_folder(run_yaml, options.out);
+  const std::filesystem::path out = output_folder(run_yaml, options.out,
+                                                  {"forward.nav", "trajectory.nav", "trajectory.csv", "run.resolved.yaml",
+                                                   "summary.json", "innovations.csv", "report.json", "report.html"});
   line.clear();
 
   study::Setup setup = setup_of(config, recordings, config.sweep);

@@ -8,6 +8,7 @@
 #include "coast/ins/mounting.hpp"
 #include "coast/io/writers.hpp"
 #include "coast/io/yaml.hpp"
+#include "coast/study/plausibility.hpp"
 #include "run_effects.hpp"
 
 namespace coast::cli {
@@ -58,6 +59,7 @@ void read_imu_noise(const Node& imu, study::Setup& setup, estimate::NoiseFitChoi
     factors.gyro_factor = given.number_within("gyro_factor", 1.0, 1e-3, 1e4);
     factors.accel_factor = given.number_within("accel_factor", 1.0, 1e-3, 1e4);
     setup.model = estimate::adjusted(setup.model, factors);
+    if (given.flag("without_gain_errors", false)) setup.model = study::without_gain_errors(setup.model, 0.0);
   });
   choice.imu_white_noise = key == NoiseKey::kEstimated;
   setup.unstated.noise.imu_white_noise = key == NoiseKey::kAdapted;

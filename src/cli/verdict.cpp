@@ -8,6 +8,7 @@
 
 #include "coast/geo/earth.hpp"
 #include "coast/geo/units.hpp"
+#include "coast/study/plausibility.hpp"
 #include "process_result.hpp"
 
 namespace coast::cli {
@@ -120,20 +121,10 @@ std::vector<Check> MotionChecks::checks() const {
 }
 
 std::optional<Check> sensor_check(const estimate::StateLayout& layout, const Eigen::VectorXd& x) {
-  const Eigen::VectorXd prior = layout.initial_covariance().diagonal().cwiseSqrt();
-  const Eigen::VectorXd mean = layout.mean(0.0);
-  Check check{"sensor_errors_over_prior", 0.0, 5.0, 20.0};
-  bool any = false;
-  for (const auto& block : layout.sensors())
-    for (int i = block.offset; i < block.offset + block.size; ++i) {
-      if (!(prior(i) > 0.0)) continue;
-      any = true;
-      const double sigmas = std::abs(x(i) - mean(i)) / prior(i);
-      if (sigmas <= check.value) continue;
-      check.value = sigmas;
-      check.text = fmt::format("{} is {:.0f} sigmas from what the error model allows", block.name, sigmas);
-    }
-  return any ? std::optional(check) : std::nullopt;
+  const auto worst = study::largest_sensor_error(layout, x);
+  if (!worst) return std::nullopt;
+  return Check{"sensor_errors_over_prior", worst->sigmas, 6.0, 20.0,
+               fmt::format("{} is {:.0f} sigmas from what the error model allows", worst->name, worst->sigmas)};
 }
 
 namespace {

@@ -51,7 +51,8 @@ std::optional<FileKind> line_kind(std::string_view line) {
   if (is_sp3(line)) return FileKind{"an SP3 file of precise orbits", ""};
   if (line.starts_with("% program") || line.starts_with("%  GPST") || line.starts_with("%  UTC"))
     return FileKind{"a .pos file of RTKLIB", "It belongs under `gnss: {file: .., format: rtklib-pos}`.", Content::kPositions};
-  if (line.find("gyro_x_radps") != std::string_view::npos)
+  // A header; configurations name the column too, with signs of YAML about it.
+  if (line.find("gyro_x_radps") != std::string_view::npos && line.find_first_of(":[]{}-") == std::string_view::npos)
     return FileKind{"a table of an IMU", "It belongs under `imu: {file: ..}` of a run.yaml.", Content::kImu};
   if (line.starts_with("schema: coast."))
     return FileKind{fmt::format("a configuration file (`{}`)", excerpt(line)), "", Content::kYaml};
@@ -64,10 +65,11 @@ std::optional<FileKind> line_kind(std::string_view line) {
 std::optional<FileKind> file_kind(std::string_view head) {
   if (auto kind = binary_kind(head)) return kind;
   constexpr int kLines = 20;  // other text may stand above, as comments do
-  for (int i = 0; i < kLines && !head.empty(); ++i) {
-    const std::size_t stop = std::min(head.find('\n'), head.size());
-    if (auto kind = line_kind(trimmed(head.substr(0, stop)))) return kind;
-    head.remove_prefix(std::min(stop + 1, head.size()));
+  std::size_t at = 0;
+  for (int i = 0; i < kLines && at < head.size(); ++i) {
+    const std::size_t stop = std::min(head.find('\n', at), head.size());
+    if (auto kind = line_kind(head.substr(at, stop - at))) return kind;
+    at = stop + 1;
   }
   return std::nullopt;
 }

@@ -187,6 +187,9 @@ config::Node load_yaml(const std::filesystem::path& path) {
     throw InputError({path.string(), 0, "more than 16 MiB", "a configuration file", "Is this a recording?"});
   }
   text.resize(size);
+  // Some files of other kinds read as YAML, RINEX for one.
+  if (const auto kind = file_kind(std::string_view(text).substr(0, 4096)); kind && kind->content == FileKind::Content::kOther)
+    refuse_other_kind(path, FileKind::Content::kYaml, "a configuration file");
   try {
     return parse_yaml(text, path.string());
   } catch (const InputError&) {

@@ -11,9 +11,11 @@
 #include "coast/geo/units.hpp"
 #include "coast/ins/compensation.hpp"
 #include "coast/record/error.hpp"
+#include "coast/study/plausibility.hpp"
 #include "gyro_start.hpp"
 #include "reversed_state.hpp"
 #include "stage.hpp"
+#include "velocity_lag.hpp"
 
 namespace coast::study {
 
@@ -84,6 +86,7 @@ ins::InitialState align_around_gaps(const ins::AlignmentInput& input, bool vehic
 PreparedMission::PreparedMission(record::ImuRecording imu, record::GnssRecording gnss, Setup setup, const Progress& progress)
     : imu_(std::move(imu)), gnss_(std::move(gnss)), setup_(std::move(setup)) {
   check_overlap(imu_, gnss_);
+  take_out_velocity_lag();
   find_standstill();
   choose_time_offset(progress);
   align(progress);
@@ -92,11 +95,11 @@ PreparedMission::PreparedMission(record::ImuRecording imu, record::GnssRecording
     mission_->increments = ins::IncrementKind::kCompensated;
   }
   if (!setup_.start) run_back_to_first_epoch();
-  test_time_offset();
   test_noise();
   if (setup_.noise_fit) {
     fit_and_adopt(progress);
   } else {
+    test_time_offset();
     refine_start(progress);
     refine_antenna(progress);
   }
@@ -172,28 +175,47 @@ void PreparedMission::test_time_offset() {
   if (shown || setup_.time_offset_s != 0.0) sd = std::max(0.1, 2.0 * std::abs(offset));
 }
 
-// Sigmas of innovations that do not fit say that noise is stated wrongly, whatever the data sheet.
+void PreparedMission::take_out_velocity_lag() {
+  if (!setup_.unstated.time_offset || !setup_.filter.use_gnss_velocity) return;
+  velocity_lag_ = velocity_lag(gnss_);
+  if (velocity_lag_) advance_velocities(gnss_, *velocity_lag_);
+}
+
+// Sigmas of innovations that do not fit say that noise is stated wrongly, whatever the data sheet; so does an IMU whose errors
+// the model holds for impossible.
 void PreparedMission::test_noise() {
   constexpr double kSmallest = 0.7, kLargest = 1.4;  // of the normalised innovations squared over their expectation
   constexpr double kRefused = 0.05;
+  constexpr double kImpossible = 6.0;  // prior sigmas
+  constexpr double kShaken = 8.0;      // times the white noise
   constexpr std::size_t kFewest = 100;
   const estimate::NoiseFitChoice& choice = setup_.unstated.noise;
   if (!(choice.gnss_scale || choice.imu_white_noise)) return;
   const Eigen::VectorXd found = start_sensor_errors_;
   const ins::InitialState start = start_;
   refine_start({});
-  const std::vector<estimate::InnovationRecord> seen = first_minutes(setup_.filter).innovations;
+  const estimate::FilterResult seen = first_minutes(setup_.filter);
+  const estimate::StateLayout layout = estimate::ForwardFilter(*mission_, setup_.model, setup_.filter).layout();
+  const auto worst = largest_sensor_error(layout, seen.last.x);
   start_ = start;
   start_sensor_errors_ = found;
-  const auto refused = static_cast<double>(std::ranges::count(seen, false, &estimate::InnovationRecord::used));
-  const double ratio = nis_over_expected(seen);
-  if (seen.size() < kFewest) return;
-  if (ratio > kSmallest && ratio < kLargest && refused < kRefused * static_cast<double>(seen.size())) return;
+  const auto innovations = static_cast<double>(seen.innovations.size());
+  const auto refused = static_cast<double>(std::ranges::count(seen.innovations, false, &estimate::InnovationRecord::used));
+  const double ratio = nis_over_expected(seen.innovations);
+  // Innovations that are too small are the fixes' stated noise: no IMU noise makes them so.
+  const bool fits = (ratio > kSmallest || !choice.gnss_scale) && ratio < kLargest && refused < kRefused * innovations;
+  const bool possible = !worst || worst->sigmas < kImpossible;
+  if (seen.innovations.size() < kFewest || (fits && possible)) return;
   if (!setup_.noise_fit) setup_.noise_fit = estimate::NoiseFitChoice{false, false, false};
   setup_.noise_fit->gnss_scale |= choice.gnss_scale;
   setup_.noise_fit->correlated_gnss |= choice.correlated_gnss;
   setup_.noise_fit->imu_white_noise |= choice.imu_white_noise;
   noise_ratio_ = ratio;
+  if (!choice.imu_white_noise || !has_gain_errors(setup_.model)) return;
+  if (vibration_over_white_noise(imu_, setup_.model) < kShaken) return;
+  setup_.model = without_gain_errors(setup_.model, imu_.rate_hz);
+  start_sensor_errors_.resize(0);  // they were of the other layout
+  gain_errors_left_out_ = true;
 }
 
 void PreparedMission::note_adaptations() {
@@ -205,6 +227,15 @@ void PreparedMission::note_adaptations() {
         "time_offset_found",
         fmt::format("The recording shows a time offset, which the run file does not state: gnss.time_offset_s: {:.4f} is used.",
                     mission_->time_offset_s));
+  if (velocity_lag_)
+    note("velocity_lag_removed",
+         fmt::format("GNSS velocities come {:.2f} s after the positions of the same file; they were moved to them.",
+                     *velocity_lag_));
+  if (gain_errors_left_out_)
+    note("gain_errors_left_out",
+         "The IMU shakes far beyond its stated noise: scale factors and misalignments cannot be told from the shaking and are "
+         "left "
+         "out of the error model (imu.noise: {without_gain_errors: true}).");
   if (!noise_ratio_ || !noise_fit_) return;
   const estimate::NoiseAdjustment& a = noise_fit_->adjustment;
   note("noise_adapted",
@@ -220,7 +251,7 @@ void PreparedMission::note_adaptations() {
 // from a start that the first has made good.
 void PreparedMission::fit_and_adopt(const Progress& progress) {
   const noise::ImuErrorModel stated_model = setup_.model;
-  const estimate::FilterOptions stated = setup_.filter;
+  estimate::FilterOptions stated = setup_.filter;
   setup_.filter.gate_probability = 0.0;
   refine_start(progress);
   const estimate::NoiseAdjustment first = estimate::starting_point(stated, *setup_.noise_fit);
@@ -239,6 +270,10 @@ void PreparedMission::fit_and_adopt(const Progress& progress) {
     from.correlated_gnss.horizontal_m = std::max(from.correlated_gnss.horizontal_m, first.correlated_gnss.horizontal_m);
     from.correlated_gnss.vertical_m = std::max(from.correlated_gnss.vertical_m, first.correlated_gnss.vertical_m);
     refine_start(progress);
+    if (!last) {
+      test_time_offset();  // beside noise that is stated wrongly an offset means nothing
+      stated.auxiliary.time_offset_sd_s = setup_.filter.auxiliary.time_offset_sd_s;
+    }
     refine_antenna(progress);
   }
 }

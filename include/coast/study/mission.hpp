@@ -69,6 +69,8 @@ class PreparedMission {
   [[nodiscard]] const std::optional<estimate::NoiseFit>& noise_fit() const { return noise_fit_; }
   /// What was taken in place of what the setup leaves unstated, an event each.
   [[nodiscard]] const record::Events& adaptations() const { return adaptations_; }
+  /// Whether the error model is without what is multiplied by a signal, unlike that of the setup.
+  [[nodiscard]] bool gain_errors_left_out() const { return gain_errors_left_out_; }
   /// The start for a filter of any layout.
   [[nodiscard]] estimate::FilterState start_state(const estimate::ForwardFilter& filter) const;
   /// Takes noise as fitted from here on.
@@ -99,6 +101,7 @@ class PreparedMission {
   void refine_antenna(const Progress& progress);
   void fit_and_adopt(const Progress& progress);
   void choose_time_offset(const Progress& progress);
+  void take_out_velocity_lag();
   void test_time_offset();
   void test_noise();
   void note_adaptations();
@@ -112,6 +115,8 @@ class PreparedMission {
   Eigen::VectorXd start_sensor_errors_;  ///< estimated, by the layout of the setup; empty: zero
   std::optional<estimate::NoiseFit> noise_fit_;
   std::optional<double> noise_ratio_;  ///< squared innovations over their expectation, where that had the noise fitted
+  std::optional<double> velocity_lag_;
+  bool gain_errors_left_out_ = false;
   record::Events adaptations_;
 };
 
