@@ -12,6 +12,7 @@
 #include "coast/ins/compensation.hpp"
 #include "coast/record/error.hpp"
 #include "coast/study/plausibility.hpp"
+#include "gross_errors.hpp"
 #include "gyro_start.hpp"
 #include "reversed_state.hpp"
 #include "stage.hpp"
@@ -86,6 +87,7 @@ ins::InitialState align_around_gaps(const ins::AlignmentInput& input, bool vehic
 PreparedMission::PreparedMission(record::ImuRecording imu, record::GnssRecording gnss, Setup setup, const Progress& progress)
     : imu_(std::move(imu)), gnss_(std::move(gnss)), setup_(std::move(setup)) {
   check_overlap(imu_, gnss_);
+  leave_out_gross_errors(gnss_, adaptations_);
   take_out_velocity_lag();
   find_standstill();
   choose_time_offset(progress);
@@ -95,11 +97,21 @@ PreparedMission::PreparedMission(record::ImuRecording imu, record::GnssRecording
     mission_->increments = ins::IncrementKind::kCompensated;
   }
   if (!setup_.start) run_back_to_first_epoch();
+  const double coarse_offset = mission_->time_offset_s;
+  const double stated_offset_sd = setup_.filter.auxiliary.time_offset_sd_s;
+  test_time_offset();
+  if (setup_.unstated.time_offset && setup_.filter.auxiliary.time_offset_sd_s > 0.0) {
+    refine_start(progress);
+    refine_antenna(progress);
+  }
   test_noise();
+  if (noise_ratio_ && setup_.unstated.time_offset) {  // found beside the wrong noise, it is to be found again
+    mission_->time_offset_s = coarse_offset;
+    setup_.filter.auxiliary.time_offset_sd_s = stated_offset_sd;
+  }
   if (setup_.noise_fit) {
     fit_and_adopt(progress);
   } else {
-    test_time_offset();
     refine_start(progress);
     refine_antenna(progress);
   }
@@ -219,10 +231,11 @@ void PreparedMission::test_noise() {
 }
 
 void PreparedMission::note_adaptations() {
+  constexpr double kNoted = 1e-3;  // s
   const auto note = [this](const char* kind, std::string text) {
     adaptations_.push_back({record::Event::Severity::kInfo, kind, std::move(text), std::nullopt, 1});
   };
-  if (setup_.unstated.time_offset && mission_->time_offset_s != 0.0)
+  if (setup_.unstated.time_offset && std::abs(mission_->time_offset_s) > kNoted)
     note(
         "time_offset_found",
         fmt::format("The recording shows a time offset, which the run file does not state: gnss.time_offset_s: {:.4f} is used.",

@@ -1,0 +1,57 @@
+#include "gross_errors.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+namespace coast::study {
+namespace {
+
+constexpr double kAcceleration = 30.0;  // m/s^2
+constexpr double kSigmas = 6.0;
+constexpr double kLeast = 5.0;        // m: smaller errors are the gate's business
+constexpr double kLongestGap = 60.0;  // s to a neighbour; beyond it nothing is known
+
+// By how much the distance from the line exceeds what is possible, m; at most zero for a possible fix.
+double excess(const record::GnssFix& before, const record::GnssFix& fix, const record::GnssFix& after) {
+  const double a = fix.t - before.t, b = after.t - fix.t;
+  if (a > kLongestGap || b > kLongestGap) return 0.0;
+  const Eigen::Vector3d line = (b * before.r_ea_e + a * after.r_ea_e) / (a + b);
+  const double variance = fix.position_cov_n.trace() + before.position_cov_n.trace() + after.position_cov_n.trace();
+  return (fix.r_ea_e - line).norm() - std::max(kLeast, 0.5 * kAcceleration * a * b + kSigmas * std::sqrt(variance));
+}
+
+}  // namespace
+
+void leave_out_gross_errors(record::GnssRecording& gnss, record::Events& events) {
+  std::vector<record::GnssFix>& fixes = gnss.fixes;
+  long count = 0;
+  std::optional<geo::GpsTime> first;
+  // A gross error pulls the lines of its neighbours along, by half: it is the one that sticks out most among the three.
+  for (bool found = true; found;) {
+    std::vector<double> out(fixes.size(), 0.0);
+    for (std::size_t i = 1; i + 1 < fixes.size(); ++i) out[i] = excess(fixes[i - 1], fixes[i], fixes[i + 1]);
+    std::vector<record::GnssFix> kept;
+    kept.reserve(fixes.size());
+    for (std::size_t i = 0; i < fixes.size(); ++i) {
+      const bool gross = out[i] > 0.0 && out[i] >= out[i - 1] && out[i] >= out[i + 1];
+      if (!gross) {
+        kept.push_back(std::move(fixes[i]));
+        continue;
+      }
+      if (!first || fixes[i].t < *first) first = fixes[i].t;
+      ++count;
+    }
+    found = kept.size() < fixes.size();
+    fixes = std::move(kept);
+  }
+  if (count == 0) return;
+  events.push_back({record::Event::Severity::kWarning, "gross_errors_left_out",
+                    fmt::format("{} GNSS fix{} impossibly far from the line between {} neighbours and {} left out", count,
+                                count == 1 ? " lies" : "es lie", count == 1 ? "its" : "their", count == 1 ? "was" : "were"),
+                    first, count});
+}
+
+}  // namespace coast::study
