@@ -2,6 +2,9 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <array>
+#include <cmath>
 #include <map>
 #include <memory>
 
@@ -49,13 +52,143 @@ KnownBase in_orbits_frame(const Eigen::Vector3d& r_e, const BaseAt::Datum& datum
                              (moved_e - r_e).norm(), target.frame, target.year));
 }
 
+/// Up to 30 epochs, spread over the file. The header's position is no start of theirs: it may be what is wrong.
+ObservationRecording sample_of(const ObservationRecording& base) {
+  constexpr std::size_t kEpochs = 30;
+  ObservationRecording sample;
+  sample.source = base.source;
+  sample.glonass_channels = base.glonass_channels;
+  const std::size_t n = std::min(kEpochs, base.epochs.size());
+  for (std::size_t i = 0; i < n; ++i) sample.epochs.push_back(base.epochs[i * base.epochs.size() / n]);
+  return sample;
+}
+
+/// The value that a share of them does not exceed.
+double quantile(std::vector<double> values, double share) {
+  const auto at = values.begin() + std::lround(share * static_cast<double>(values.size() - 1));
+  std::ranges::nth_element(values, at);
+  return *at;
+}
+
+constexpr std::size_t kLeastPoints = 5;
+
+std::vector<SinglePoint> sampled_points(const ObservationRecording& base, const Orbits& orbits,
+                                        const DifferenceOptions& options) {
+  std::vector<SinglePoint> points;
+  for (const auto& point : single_points(sample_of(base), orbits, options))
+    if (point) points.push_back(*point);
+  return points;
+}
+
+/// What the base's codes say of where it is, N, E, D.
+struct OwnPosition {
+  geo::LocalFrame frame;
+  std::size_t epochs = 0;
+  Eigen::Vector3d median_n, sd_n;  ///< m
+  double spread = 0.0;             ///< horizontal, between the outer tenths of the positions, m
+  double spread_sd = 0.0;          ///< that the sigmas of the positions let expect, m
+};
+
+std::optional<OwnPosition> own_position(const ObservationRecording& base, const Orbits& orbits,
+                                        const DifferenceOptions& options) {
+  constexpr double kMadToSd = 1.4826;
+  DifferenceOptions free = options;
+  free.air.ionosphere_free = true;
+  std::vector<SinglePoint> points = sampled_points(base, orbits, free);
+  const bool two_bands = points.size() >= kLeastPoints;
+  if (!two_bands) points = sampled_points(base, orbits, options);
+  if (points.size() < kLeastPoints) return std::nullopt;
+  OwnPosition own{geo::LocalFrame(geo::geodetic_from_ecef(points[points.size() / 2].r_e)), points.size(), {}, {}};
+  const double factor = two_bands ? 1.0 : options.air.ionosphere ? 3.0 : 10.0;
+  const Eigen::Vector3d common = factor * Eigen::Vector3d(0.7, 0.7, 1.5);
+  for (Eigen::Index i = 0; i < 3; ++i) {
+    std::vector<double> along, off, variances;
+    for (const SinglePoint& point : points) {
+      along.push_back(own.frame.to_ned(point.r_e)(i));
+      const Eigen::Vector3d axis_e = own.frame.rotation().col(i);
+      variances.push_back(axis_e.dot(point.covariance_e * axis_e));
+    }
+    own.median_n(i) = quantile(along, 0.5);
+    for (const double a : along) off.push_back(std::abs(a - own.median_n(i)));
+    own.sd_n(i) = std::hypot(common(i), kMadToSd * quantile(off, 0.5));
+    if (i == 2) continue;
+    own.spread = std::hypot(own.spread, quantile(along, 0.9) - quantile(along, 0.1));
+    own.spread_sd = std::hypot(own.spread_sd, std::sqrt(2.0 * quantile(variances, 0.5)));
+  }
+  return own;
+}
+
+std::string metres(double distance) {
+  return distance < 10e3 ? fmt::format("{:.1f} m", distance) : fmt::format("{:.0f} km", 1e-3 * distance);
+}
+
+/// A rover's file in the base's place, or a base that moves and is not said to.
+std::optional<record::Event> motion_of(const OwnPosition& own, const ObservationRecording& base) {
+  constexpr double kDoubtful = 30.0, kUnmistakable = 50.0;  // m
+  constexpr double kSigmas = 5.0;
+  if (own.spread < std::max(kDoubtful, kSigmas * own.spread_sd)) return std::nullopt;
+  const std::string found =
+      fmt::format("the file given as base moves by {} (sigma {:.1f} m) by its own codes", metres(own.spread), own.spread_sd);
+  const std::string what_to_do = "Are rover and base exchanged? Exchange `rover` and `base`, or say base_position: moving.";
+  if (own.spread > kUnmistakable) throw InputError({base.source, 0, found, "a receiver at rest", what_to_do});
+  return record::Event{record::Event::Severity::kWarning, "base_moves",
+                       fmt::format("{}: {}. {}", base.source, found, what_to_do), std::nullopt, 1};
+}
+
+/// " Its y has the wrong sign.", where another sign of some coordinates fits.
+std::string sign_in_words(const Eigen::Vector3d& stated_e, const Eigen::Vector3d& own_e) {
+  constexpr double kFits = 1e3;  // m
+  constexpr std::array kNames{"", "x", "y", "x and y", "z", "x and z", "y and z", "x, y and z"};
+  for (std::size_t flipped = 1; flipped < kNames.size(); ++flipped) {
+    Eigen::Vector3d other_e = stated_e;
+    for (Eigen::Index i = 0; i < 3; ++i)
+      if ((flipped >> i & 1U) != 0) other_e(i) = -other_e(i);
+    if ((other_e - own_e).norm() < kFits) return fmt::format("With the sign of {} changed it fits: a sign? ", kNames[flipped]);
+  }
+  return "";
+}
+
 }  // namespace
+
+record::Events examine_base(const BaseAt& base_at, const KnownBase& known, const ObservationRecording& base,
+                            const Orbits& orbits, const DifferenceOptions& options) {
+  constexpr double kElsewhere = 10e3, kDoubtful = 10.0, kDoubtfulHeader = 3.0;  // m
+  if (base_at.how == BaseAt::How::kMoving) return {};
+  const auto own = own_position(base, orbits, options);
+  if (!own) return {};
+  record::Events events;
+  if (const auto moves = motion_of(*own, base)) events.push_back(*moves);
+  if (base_at.how == BaseAt::How::kAverage) return events;
+  const bool unstated = base_at.how == BaseAt::How::kUnstated;
+  const bool header = unstated || base_at.how == BaseAt::How::kHeader;
+  const Eigen::Vector3d off_n = own->frame.to_ned(known.r_e) - own->median_n;
+  const double off = off_n.norm();
+  const double sd = off > 0.0 ? off_n.cwiseProduct(own->sd_n).norm() / off : own->sd_n.norm();
+  const std::string found = fmt::format("{} is {} from where the base's own codes put it ({} epochs, sigma {:.1f} m)",
+                                        header ? "the header's position of the base, which is approximate," : "base_position",
+                                        metres(off), own->epochs, sd);
+  const std::string what_to_do =
+      fmt::format("Give base_position: {{ecef_m: [x, y, z]}} of the base's marker{}.",
+                  unstated ? ", or base_position: header where the header's is good to centimetres" : "");
+  if (off > kElsewhere)
+    throw InputError(
+        {base.source, 0, found, "metres", sign_in_words(known.r_e, own->frame.to_ecef(own->median_n)) + what_to_do});
+  const double bound = header ? std::max(kDoubtfulHeader, 2.0 * sd) : std::max(kDoubtful, 5.0 * sd);
+  if (!unstated && off < bound) return events;
+  events.push_back(
+      {record::Event::Severity::kWarning, "base_position_doubtful",
+       fmt::format("{}: {}: north {:.1f}, east {:.1f}, up {:.1f} m. An error of the base is one of every position of "
+                   "the rover. {}",
+                   base.source, found, off_n.x(), off_n.y(), -off_n.z(), what_to_do),
+       std::nullopt, 1});
+  return events;
+}
 
 KnownBase known_base(const BaseAt& base_at, const ObservationRecording& base, const Orbits& orbits,
                      const DifferenceOptions& options) {
   if (base_at.how == BaseAt::How::kGiven && base_at.datum) return in_orbits_frame(base_at.r_e, *base_at.datum, base);
   if (base_at.how == BaseAt::How::kGiven) return at_rest(antenna(base, base_at.r_e), "given in the configuration");
-  if (base_at.how == BaseAt::How::kHeader) {
+  if (base_at.how == BaseAt::How::kHeader || base_at.how == BaseAt::How::kUnstated) {
     if (!base.approximate_r_e)
       throw InputError({base.source, 0, "no APPROX POSITION XYZ in the header", "the base's position",
                         "Give base_position: {ecef_m: [x, y, z]}, or base_position: average."});

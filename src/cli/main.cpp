@@ -64,6 +64,13 @@ void add_synth(CLI::App& app, std::filesystem::path& input, CommonOptions& commo
   });
 }
 
+void add_ppk(CLI::App& app, std::filesystem::path& input, CommonOptions& common) {
+  auto* ppk = subcommand(app, "ppk", "RINEX of rover and base -> fixed carrier-phase positions", "", common);
+  ppk->add_option("input", input, "run.yaml with gnss: {ppk: ..}, or ppk.yaml")->required();
+  ppk->footer(fmt::format("Example:\n  coast ppk ppk.yaml --out positions\n\nppk.yaml:\n{}", coast::cli::ppk_example("  ")));
+  ppk->callback([&input, &common] { coast::cli::ppk(input, common); });
+}
+
 void add_compare(CLI::App& app, std::filesystem::path& first, std::filesystem::path& second, std::vector<double>& lever_arm,
                  CommonOptions& common) {
   auto* compare = subcommand(app, "compare", "two trajectories: N, E, D and attitude differences, first minus second",
@@ -142,10 +149,7 @@ int run(int argc, char** argv) {
 
   add_calibrate(app, input, common);
 
-  auto* ppk = subcommand(app, "ppk", "RINEX of rover and base -> fixed carrier-phase positions", "", common);
-  ppk->add_option("input", input, "run.yaml with gnss: {ppk: ..}, or ppk.yaml")->required();
-  ppk->footer(fmt::format("Example:\n  coast ppk ppk.yaml --out positions\n\nppk.yaml:\n{}", coast::cli::ppk_example("  ")));
-  ppk->callback([&] { coast::cli::ppk(input, common); });
+  add_ppk(app, input, common);
 
   add_synth(app, input, common);
 

@@ -73,7 +73,10 @@ carrier::BaseAt base_position(const Node& map) {
   using carrier::BaseAt;
   constexpr std::array kHows{BaseAt::How::kHeader, BaseAt::How::kAverage, BaseAt::How::kMoving};
   const auto node = map.find("base_position");
-  if (!node || !node->is_map()) return {kHows[map.choice("base_position", {"header", "average", "moving"}, 0)], {}, {}};
+  if (!node || !node->is_map()) {
+    const BaseAt::How how = kHows[map.choice("base_position", {"header", "average", "moving"}, 0)];
+    return {node ? how : BaseAt::How::kUnstated, {}, {}};
+  }
   BaseAt given{BaseAt::How::kGiven, given_position(*node), std::nullopt};
   if (node->find("frame")) given.datum = datum(*node, given.r_e);
   return given;

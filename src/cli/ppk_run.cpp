@@ -80,6 +80,7 @@ PpkResult run_ppk(const PpkConfig& config, const std::function<void(double)>& pr
   const carrier::KnownBase known = carrier::known_base(config.base_at, base, orbits, options.differences);
   result.r_base_e = known.r_e;
   result.base_from = known.from;
+  append(carrier::examine_base(config.base_at, known, base, orbits, options.differences), result.events);
   if (config.antex) add_antennas(antennas, rover, base, options.differences, result.events);
   result.solution = carrier::solve_ppk(rover, base, orbits, known.at, options, progress);
   result.options = std::move(options);

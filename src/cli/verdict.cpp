@@ -180,6 +180,23 @@ const record::Event* find(const record::Events& events, std::string_view kind) {
   return found == events.end() ? nullptr : &*found;
 }
 
+// Fixes that were refused and then followed: a jump that stays, and either side of it may be the wrong one. Behind a studied
+// outage it is the drift that was larger than predicted.
+void add_jumps(const ProcessResult& result, std::vector<Check>& checks) {
+  if (!result.outages.empty()) return;
+  const auto jumps = std::ranges::count(result.events, "gate_opened", &record::Event::kind);
+  const record::Event* first = find(result.events, "gate_opened");
+  checks.push_back(
+      {"gnss_jumps",
+       static_cast<double>(jumps),
+       0.0,
+       {},
+       first == nullptr || !first->time
+           ? ""
+           : fmt::format("GNSS jumped and stayed there {} time{}, first at {:.1f} s of week: either side may be wrong", jumps,
+                         jumps == 1 ? "" : "s", first->time->sow())});
+}
+
 // Mistakes in the order in which each hides the ones behind it.
 std::string likely_cause(const ProcessResult& result) {
   for (const char* kind : {"specific_force_size", "gravity_sign", "gravity_axis", "gyro_sign", "gyro_unit", "leap_second_shift",
@@ -195,6 +212,7 @@ Judgement judge(const ProcessResult& result, std::vector<Check> motion) {
   add_innovations(result, judgement.checks);
   add_separation(result, judgement.checks);
   add_noise_fit(result, judgement.checks);
+  add_jumps(result, judgement.checks);
   if (judgement.standing() != Standing::kGood) judgement.likely_cause = likely_cause(result);
   return judgement;
 }

@@ -136,13 +136,26 @@ void put_calendar(TextBuffer& text, geo::GpsTime t) {
   text.put_fixed(c.second, 6);
 }
 
+/// Digits beyond the usual ones, so that standard deviations below a tenth of a millimetre keep four of their own. At most
+/// seven: a nanometre still has them.
+int more_digits(const Eigen::Matrix3d& covariance) {
+  constexpr double kUsual = 1e-4;  // m or m/s
+  constexpr int kMost = 7;
+  int more = 0;
+  for (const double variance : covariance.diagonal()) {
+    const double sd = std::sqrt(variance);
+    if (sd > 0.0 && sd < kUsual) more = std::max(more, -2 - static_cast<int>(std::floor(std::log10(sd))));
+  }
+  return std::min(more, kMost);
+}
+
 /// sdn sde sdu sdne sdeu sdun of a covariance in N, E, D: standard deviations and signed roots.
-void put_signed_roots(TextBuffer& text, const Eigen::Matrix3d& ned) {
+void put_signed_roots(TextBuffer& text, const Eigen::Matrix3d& ned, int more) {
   const auto signed_root = [](double c) { return std::copysign(std::sqrt(std::abs(c)), c); };
   for (const double value : {std::sqrt(ned(0, 0)), std::sqrt(ned(1, 1)), std::sqrt(ned(2, 2)), signed_root(ned(0, 1)),
                              signed_root(-ned(1, 2)), signed_root(-ned(0, 2))}) {
     text.put(' ');
-    text.put_fixed(value, 5, 9);
+    text.put_fixed(value, 5 + more, 9 + more);
   }
 }
 
@@ -157,28 +170,31 @@ void put_pos_line(TextBuffer& text, const record::GnssFix& fix) {
   const geo::Geodetic p = geo::geodetic_from_ecef(fix.r_ea_e);
   put_calendar(text, fix.t);
   text.put(' ');
-  text.put_fixed(p.latitude / geo::kDegree, 9, 14);
+  const int more = more_digits(fix.position_cov_n);
+  const int finer = std::min(more, 6);  // a double has no sixteenth decimal of a degree
+  text.put_fixed(p.latitude / geo::kDegree, 9 + finer, 14 + finer);
   text.put(' ');
-  text.put_fixed(p.longitude / geo::kDegree, 9, 14);
+  text.put_fixed(p.longitude / geo::kDegree, 9 + finer, 14 + finer);
   text.put(' ');
-  text.put_fixed(p.height, 4, 10);
+  text.put_fixed(p.height, 4 + more, 10 + more);
   text.put(' ');
   text.put_integer(static_cast<int>(fix.quality == record::FixQuality::kUnknown ? record::FixQuality::kSingle : fix.quality),
                    3);
   text.put(' ');
   text.put_integer(fix.satellites.value_or(0), 3);
-  put_signed_roots(text, fix.position_cov_n);
+  put_signed_roots(text, fix.position_cov_n, more);
   text.put(' ');
   text.put_fixed(fix.age_s.value_or(0.0), 2, 6);
   text.put(' ');
   text.put_fixed(fix.ratio.value_or(0.0), 1, 6);
   if (fix.velocity) {
     const Eigen::Vector3d& v = fix.velocity->v_ea_n;
+    const int digits = more_digits(fix.velocity->cov_n);
     for (const double component : {v.x(), v.y(), -v.z()}) {
       text.put(' ');
-      text.put_fixed(component, 5, 10);
+      text.put_fixed(component, 5 + digits, 10 + digits);
     }
-    put_signed_roots(text, fix.velocity->cov_n);
+    put_signed_roots(text, fix.velocity->cov_n, digits);
   }
   text.end_line();
 }

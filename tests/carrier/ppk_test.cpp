@@ -7,9 +7,11 @@
 #include "coast/carrier/signals.hpp"
 #include "coast/carrier/solid_tides.hpp"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include "coast/record/error.hpp"
+#include "io/files.hpp"
 #include "simulated.hpp"
 
 namespace coast::carrier {
@@ -249,6 +251,81 @@ TEST(Ppk, KnowsTheBaseByWhateverTellsIt) {
     EXPECT_LT((above(known_base(base_at, base, orbits, {})) - Eigen::Vector3d(-0.2, 0.1, -1.5)).norm(), 1e-8);
   base.approximate_r_e.reset();
   EXPECT_THROW(static_cast<void>(known_base({BaseAt::How::kHeader, {}}, base, orbits, {})), InputError);
+}
+
+/// A mission whose base is examined against its own codes.
+struct Examined {
+  SimulatedBaseline mission;
+  BroadcastOrbits orbits;
+  DifferenceOptions options;
+
+  Examined() : mission("car_roundabout", 360.0, simulate::ObservationOptions{}), orbits(mission.observed.navigation) {
+    options.air.ionosphere = mission.observed.navigation.gps_ionosphere;
+  }
+  [[nodiscard]] record::Events operator()(const BaseAt& base_at, const record::ObservationRecording& base) const {
+    return examine_base(base_at, known_base(base_at, base, orbits, options), base, orbits, options);
+  }
+  [[nodiscard]] record::Events given(const Eigen::Vector3d& r_e) const {
+    return (*this)({BaseAt::How::kGiven, r_e}, mission.observed.base);
+  }
+  [[nodiscard]] std::string refusal(const BaseAt& base_at, const record::ObservationRecording& base) const {
+    return test::refusal([&] { static_cast<void>((*this)(base_at, base)); });
+  }
+};
+
+TEST(Ppk, BaseThatItsOwnCodesPutElsewhereIsDoubtful) {
+  const Examined examine;
+  const Eigen::Vector3d r_e = examine.mission.observed.r_base_e;
+  EXPECT_TRUE(examine.given(r_e).empty());
+  const Eigen::Matrix3d C_n_e = geo::C_n_e(geo::geodetic_from_ecef(r_e));
+  const record::Events events = examine.given(r_e + C_n_e * Eigen::Vector3d(65.0, -85.0, 0.0));
+  ASSERT_EQ(events.size(), 1U);
+  EXPECT_EQ(events[0].kind, "base_position_doubtful");
+  EXPECT_EQ(events[0].severity, record::Event::Severity::kWarning);
+  for (const char* part : {"north 6", "east -8", "sigma", "base_position: {ecef_m"})  // codes are good to metres
+    EXPECT_NE(events[0].text.find(part), std::string::npos) << events[0].text;
+  record::ObservationRecording base = examine.mission.observed.base;
+  EXPECT_TRUE(examine({BaseAt::How::kHeader, {}}, base).empty());
+  base.approximate_r_e = r_e + C_n_e * Eigen::Vector3d(0.0, 8.0, 0.0);
+  const record::Events header = examine({BaseAt::How::kHeader, {}}, base);
+  ASSERT_EQ(header.size(), 1U);
+  EXPECT_NE(header[0].text.find("approximate"), std::string::npos) << header[0].text;
+  EXPECT_TRUE(examine({BaseAt::How::kAverage, {}}, base).empty());
+  // Nobody stated it: it is said where it is from, however near.
+  const record::Events unsaid = examine({BaseAt::How::kUnstated, {}}, examine.mission.observed.base);
+  ASSERT_EQ(unsaid.size(), 1U);
+  EXPECT_NE(unsaid[0].text.find("or base_position: header"), std::string::npos) << unsaid[0].text;
+}
+
+TEST(Ppk, BaseOnTheOtherSideOfTheEarthIsRefused) {
+  const Examined examine;
+  const record::ObservationRecording& base = examine.mission.observed.base;
+  const Eigen::Vector3d r_e = examine.mission.observed.r_base_e;
+  for (const auto& [sign, name] :
+       {std::pair{Eigen::Vector3d(-1.0, -1.0, -1.0), "x, y and z"}, std::pair{Eigen::Vector3d(1.0, 1.0, -1.0), "of z"},
+        std::pair{Eigen::Vector3d(-1.0, -1.0, 1.0), "x and y"}}) {
+    const BaseAt base_at{BaseAt::How::kGiven, r_e.cwiseProduct(sign)};
+    const std::string said = examine.refusal(base_at, base);
+    const double km = 1e-3 * (base_at.r_e - r_e).norm();
+    EXPECT_NE(said.find(fmt::format("{:.0f} km from where", km)), std::string::npos) << said;
+    EXPECT_NE(said.find(fmt::format("{} changed it fits: a sign?", name)), std::string::npos) << said;
+  }
+  const std::string said = examine.refusal({BaseAt::How::kGiven, r_e + Eigen::Vector3d(0.0, 40e3, 0.0)}, base);
+  EXPECT_NE(said.find("40 km from where"), std::string::npos) << said;
+  EXPECT_EQ(said.find("sign"), std::string::npos) << said;
+  record::ObservationRecording flipped = base;  // where the header is wrong, its position is no start of the codes' solution
+  flipped.approximate_r_e = -r_e;
+  EXPECT_NE(examine.refusal({BaseAt::How::kHeader, {}}, flipped).find("a sign?"), std::string::npos);
+}
+
+TEST(Ppk, BaseThatMovesIsTakenForTheRover) {
+  const Examined examine;
+  const record::ObservationRecording& rover = examine.mission.observed.rover;
+  const BaseAt given{BaseAt::How::kGiven, examine.mission.observed.r_base_e};
+  const std::string said = examine.refusal(given, rover);
+  EXPECT_NE(said.find("the file given as base moves by"), std::string::npos) << said;
+  EXPECT_NE(said.find("Are rover and base exchanged?"), std::string::npos) << said;
+  EXPECT_TRUE(examine({BaseAt::How::kMoving, {}}, rover).empty());
 }
 
 // A station's sheet states ETRF2000 at 2010; Europe drifts by 2.5 cm a year in ITRF, ETRF by nothing.

@@ -78,6 +78,22 @@ TEST(PpkCommand, FeedsTheNavigationFilterInOneCommand) {
   EXPECT_NE(text_of(folder.path() / "stdout.txt").find("epochs fixed"), std::string::npos);
 }
 
+TEST(PpkCommand, WarnsOfABaseThatItsOwnCodesPutElsewhere) {
+  const test::TemporaryDirectory folder;
+  const auto with = [&](const char* line) {
+    write(folder.path() / "ppk.yaml",
+          fmt::format("rover: {0}/rover.obs\nbase: {0}/base.obs\nnav: [{0}/brdc.nav]\n{1}\n", rinex().string(), line));
+    const Outcome outcome = run(fmt::format("ppk '{}'", (folder.path() / "ppk.yaml").string()), folder.path());
+    EXPECT_EQ(outcome.status, 0) << outcome.error;
+    const bool in_file = text_of(folder.path() / "ppk.out" / "ppk.json").find("base_position_doubtful") != std::string::npos;
+    EXPECT_EQ(outcome.error.find("warning:") != std::string::npos && outcome.error.find("sigma") != std::string::npos, in_file);
+    return in_file;
+  };
+  EXPECT_FALSE(with("base_position: header"));
+  EXPECT_TRUE(with("# nobody says where the base is"));
+  EXPECT_TRUE(with("base_position: {geodetic_deg_m: [46.548, 6.583, 400]}"));  // 110 m to the north
+}
+
 /// The mission's run file with other outages and coupling.
 fs::path run_file(const fs::path& folder, const std::string& gnss, const std::string& outages) {
   std::string text = text_of(rinex() / "run-rinex.yaml");
@@ -176,6 +192,9 @@ INSTANTIATE_TEST_SUITE_P(
         SpoiledPpk{"unknown key", "motion:", "moton:", "moton"}, SpoiledPpk{"no rover", "rover:", "#", "rover"},
         SpoiledPpk{"a word", "kinematic", "flying", "flying"},
         SpoiledPpk{"a base in space", "header", "{ecef_m: [1, 2, 3]}", "not on the Earth"},
+        SpoiledPpk{"a base of the other hemisphere", "header", "{geodetic_deg_m: [-46.547, 6.583, 400]}",
+                   "of z changed it fits: a sign?"},
+        SpoiledPpk{"rover for base", "base.obs", "rover.obs", "Are rover and base exchanged?"},
         SpoiledPpk{"a base of two numbers", "header", "{ecef_m: [1, 2]}", "ecef_m"},
         SpoiledPpk{"a frame that nobody knows", "header", "{ecef_m: [4365683, 503817, 4607565], frame: ITRF1800, epoch: 2020}",
                    "one of"},

@@ -235,6 +235,38 @@ TEST(PosWriter, ReadsBackWithinTheDigitsPrinted) {
   }
 }
 
+// A simulation without errors to speak of writes sigmas of micrometres.
+TEST(RtklibPos, SmallSigmasKeepTheirDigits) {
+  record::GnssRecording gnss;
+  for (const double sd : {3e-4, 1e-6, 2.5e-8}) {
+    record::GnssFix fix;
+    fix.t = GpsTime::from_week(2374, 208800.0 + static_cast<double>(gnss.fixes.size()));
+    fix.r_ea_e = geo::ecef_from_geodetic(degrees(46.5123456789123, -106.5123456789123, 412.123456789));
+    Eigen::Matrix3d correlation;
+    correlation << 1.0, 0.9, 0.0, 0.9, 1.0, -0.3, 0.0, -0.3, 1.0;
+    fix.position_cov_n = sd * sd * correlation;
+    fix.velocity = {Eigen::Vector3d(1.23456789, -0.5, 0.25), 0.01 * fix.position_cov_n};
+    fix.quality = FixQuality::kFixed;
+    gnss.fixes.push_back(fix);
+  }
+  const Files files;
+  write_gnss_pos(files.path("a.pos"), gnss);
+  const auto back = files.gnss("a.pos");
+  ASSERT_EQ(back.fixes.size(), gnss.fixes.size());
+  for (std::size_t i = 1; i < gnss.fixes.size(); ++i) {
+    const auto& a = gnss.fixes[i];
+    const auto& b = back.fixes[i];
+    const double variance = a.position_cov_n(0, 0);
+    // Half of the fourth digit of a root: 1e-3 of a variance.
+    EXPECT_LT((a.position_cov_n - b.position_cov_n).cwiseAbs().maxCoeff(), 1e-3 * variance);
+    ASSERT_TRUE(b.velocity);
+    EXPECT_LT((a.velocity->cov_n - b.velocity->cov_n).cwiseAbs().maxCoeff(), 1e-3 * 0.01 * variance);
+    // A nanometre is what ECEF and back leaves; digits leave less than a tenth of the sigma.
+    EXPECT_LT((a.r_ea_e - b.r_ea_e).norm(), 0.1 * std::sqrt(variance) + 1e-8);
+    EXPECT_LT((a.velocity->v_ea_n - b.velocity->v_ea_n).norm(), 0.01 * std::sqrt(variance));
+  }
+}
+
 TEST(KfGinsGnss, WithAndWithoutVelocity) {
   const Files files;
   files.put("a.txt", "456300.0 30.5 114.3 20.0 0.01 0.02 0.03\n456301.0 30.5 114.3 20.0 0.01 0.02 0.03\n");

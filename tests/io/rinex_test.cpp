@@ -121,6 +121,51 @@ TEST(RinexObservation, EventsAndPowerFailures) {
   EXPECT_EQ(test::count_of(recording.events, "rinex_power_failure"), 1);
 }
 
+// RINEX 3.05, table A2: stored numbers are divided by the factor.
+TEST(RinexObservation, ScaleFactorsOfTypesOverTwoLinesAndOfAWholeSystem) {
+  const auto scale = [](const std::string& text) { return header_line(text, "SYS / SCALE FACTOR"); };
+  const std::string factors = scale("G   10   3 L1C L2W") + scale("           D1C") + scale("R 1000");
+  const test::Files files;
+  files.put("a.obs", header3() + factors + kEnd + epoch3("0.0000000", 2) + kG05 + kR07 +
+                         ">                              4  2\n" + scale("G    1   1 L1C") + scale("R  100   0") +
+                         epoch3("1.0000000", 2) + kG05 + kR07);
+  const auto recording = io::read_observations(files.path("a.obs"));
+  ASSERT_EQ(recording.epochs.size(), 2U);
+  const auto& seen = recording.epochs[0].observations;
+  ASSERT_EQ(seen.size(), 3U);
+  EXPECT_DOUBLE_EQ(seen[0].code_m.value(), 21243381.127);
+  EXPECT_DOUBLE_EQ(seen[0].phase_cycles.value(), 11163471.6537);
+  EXPECT_DOUBLE_EQ(seen[0].doppler_hz.value(), -147.6856);
+  EXPECT_DOUBLE_EQ(seen[0].cn0_dbhz.value(), 46.813);
+  EXPECT_DOUBLE_EQ(seen[1].phase_cycles.value(), 8698808.6049);
+  EXPECT_DOUBLE_EQ(seen[2].code_m.value(), 20000.0);
+  EXPECT_DOUBLE_EQ(seen[2].phase_cycles.value(), 106931.0015);
+  const auto& after = recording.epochs[1].observations;  // what the event does not name stays as it was
+  ASSERT_EQ(after.size(), 3U);
+  EXPECT_DOUBLE_EQ(after[0].phase_cycles.value(), 111634716.537);
+  EXPECT_DOUBLE_EQ(after[0].doppler_hz.value(), -147.6856);
+  EXPECT_DOUBLE_EQ(after[2].code_m.value(), 200000.0);
+}
+
+TEST(RinexObservation, ScaleFactorsThatAreNoneAreRefusedWithTheirLine) {
+  const test::Files files;
+  const auto said = [&](const std::string& first, const std::string& second = "") {
+    std::string records = header_line(first, "SYS / SCALE FACTOR");
+    if (!second.empty()) records += header_line(second, "SYS / SCALE FACTOR");
+    files.put("x.obs", header3() + records + kEnd + epoch3("0.0000000", 1) + kG05);
+    return test::refusal([&] { static_cast<void>(io::read_observations(files.path("x.obs"))); });
+  };
+  for (const char* record : {"G   20   1 L1C", "G    0   1 L1C", "G  -10   1 L1C", "G        1 L1C", "G  ten   1 L1C"})
+    EXPECT_NE(said(record).find("expected 1, 10, 100 or 1000"), std::string::npos) << said(record);
+  EXPECT_NE(said("G   20   1 L1C").find("x.obs:10: the scale factor '20'"), std::string::npos) << said("G   20   1 L1C");
+  EXPECT_NE(said("G   10   x L1C").find("x.obs:10: 'x' types"), std::string::npos) << said("G   10   x L1C");
+  EXPECT_NE(said("G   10   1 L1C L2W").find("more types"), std::string::npos);
+  EXPECT_NE(said("G   10     L1C").find("more types"), std::string::npos);
+  EXPECT_NE(said("G   10   2 L1C").find("1 types with a scale factor of G, expected the 2 announced"), std::string::npos);
+  EXPECT_NE(said("G   10   2 L1C", "R   10").find("x.obs:11:"), std::string::npos);
+  EXPECT_NE(said("G   10   1 L1C", "           L2W").find("x.obs:11:"), std::string::npos);
+}
+
 TEST(RinexObservation, WhatIsSpoiledIsCountedAndTheRestIsKept) {
   const test::Files files;
   files.put("a.obs", header3() + kEnd + epoch3("0.0000000", 4) + kG05 + kG05 +             // twice

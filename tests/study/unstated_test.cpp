@@ -16,8 +16,8 @@ bool adapted(const PreparedMission& mission, std::string_view kind) {
   return std::ranges::find(mission.adaptations(), kind, &record::Event::kind) != mission.adaptations().end();
 }
 
-Setup nothing_stated(const simulate::Scenario& scenario) {
-  Setup setup = test::setup_of(scenario);
+study::Setup nothing_stated(const simulate::Scenario& scenario) {
+  study::Setup setup = test::setup_of(scenario);
   setup.unstated = {.noise = {.gnss_scale = true, .correlated_gnss = true, .imu_white_noise = true}, .time_offset = true};
   return setup;
 }
@@ -33,7 +33,7 @@ TEST_P(TimeOffset, IsFoundAndAFalseOneRejected) {
   simulate::Scenario scenario = test::drive(360.0, 31);
   scenario.gnss.time_offset = GetParam().truth;
   simulate::SimulatedMission recording = simulate::simulate(scenario);
-  Setup setup = nothing_stated(scenario);
+  study::Setup setup = nothing_stated(scenario);
   setup.unstated.time_offset_seen_s = GetParam().seen;
   const PreparedMission mission(std::move(recording.imu), std::move(recording.gnss), setup, {});
   EXPECT_NEAR(mission.mission().time_offset_s, GetParam().truth, 2e-3);
@@ -47,7 +47,7 @@ INSTANTIATE_TEST_SUITE_P(Shifts, TimeOffset,
 TEST(Unstated, NoiseThatInnovationsContradictIsFitted) {
   const simulate::Scenario scenario = test::drive(360.0, 33);
   simulate::SimulatedMission recording = simulate::simulate(scenario);
-  Setup setup = nothing_stated(scenario);
+  study::Setup setup = nothing_stated(scenario);
   constexpr double kTooSmall = 20.0;
   setup.model = setup.model.with_white_noise_scaled(noise::Sensor::kGyro, 1.0 / kTooSmall)
                     .with_white_noise_scaled(noise::Sensor::kAccel, 1.0 / kTooSmall);

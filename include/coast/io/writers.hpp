@@ -81,7 +81,8 @@ class TrajectoryWriter {
 /// The names that make_trajectory_writer knows.
 [[nodiscard]] const std::vector<std::string_view>& trajectory_formats();
 
-/// GNSS fixes as RTKLIB `.pos` with signed-root covariances; reads back to the digits printed (1e-9 deg, 1e-4 m, 1e-5 m of sd).
+/// GNSS fixes as RTKLIB `.pos` with signed-root covariances; reads back to the digits printed (1e-9 deg, 1e-4 m, 1e-5 m of sd;
+/// of a fix with a sd below 1e-4 m as many more as give it four digits, down to a nanometre).
 void write_gnss_pos(const std::filesystem::path& path, const record::GnssRecording& gnss);
 /// IMU as CSV with the default header: mean rates over each interval.
 void write_imu_csv(const std::filesystem::path& path, const record::ImuRecording& imu);

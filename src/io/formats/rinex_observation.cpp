@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <map>
 
 #include "../rinex_lines.hpp"
 #include "../text.hpp"
@@ -23,6 +24,18 @@ constexpr std::size_t kObservationWidth = 16;  // of a number with its two flags
 struct ObservationType {
   char quantity = ' ';   ///< 'C', 'L', 'D', 'S'; ' ': nothing that is used
   std::size_t slot = 0;  ///< index of its signal
+  double factor = 1.0;   ///< that its numbers are stored times
+};
+
+/// What SYS / SCALE FACTOR says of one system: by type, and of the types it does not name.
+struct ScaleFactors {
+  double others = 1.0;
+  std::map<std::string, double> by_type;
+
+  [[nodiscard]] double of(char quantity, Signal signal) const {
+    const auto found = by_type.find({quantity, signal.band, signal.tracking});
+    return found == by_type.end() ? others : found->second;
+  }
 };
 
 /// The columns of one system.
@@ -30,7 +43,7 @@ struct SystemTypes {
   std::vector<ObservationType> columns;
   std::vector<Signal> signals;  ///< ascending
 
-  void set(const std::vector<std::pair<char, Signal>>& types) {
+  void set(const std::vector<std::pair<char, Signal>>& types, const ScaleFactors& factors) {
     columns.clear();
     signals.clear();
     for (const auto& [quantity, signal] : types)
@@ -38,7 +51,8 @@ struct SystemTypes {
     std::ranges::sort(signals);
     signals.erase(std::unique(signals.begin(), signals.end()), signals.end());
     for (const auto& [quantity, signal] : types)
-      columns.push_back({quantity, static_cast<std::size_t>(std::ranges::lower_bound(signals, signal) - signals.begin())});
+      columns.push_back({quantity, static_cast<std::size_t>(std::ranges::lower_bound(signals, signal) - signals.begin()),
+                         factors.of(quantity, signal)});
   }
 };
 
@@ -88,6 +102,9 @@ class ObservationReader {
   void read_header();
   void read_header_line(std::string_view line, std::string_view label);
   void read_types3(std::string_view line);
+  void begin_factor(std::string_view line);
+  void read_factor(std::string_view line);
+  void set_types3(SatelliteSystem system);
   void read_types2(std::string_view line);
   void read_slots(std::string_view line);
   void set_types2();
@@ -116,6 +133,13 @@ class ObservationReader {
   char types3_system_ = ' ';
   std::array<std::vector<std::pair<char, Signal>>, 7> types3_;
   bool has_types_ = false;
+  /// A record SYS / SCALE FACTOR, which may go on in the next lines.
+  struct {
+    char system = ' ';
+    double factor = 1.0;
+    std::size_t announced = 0, listed = 0;  ///< types; none: all of the system
+  } scaled_;
+  std::array<ScaleFactors, 7> factors_;
 
   record::ObservationEpoch epoch_;
   std::optional<Satellite> satellite_;
@@ -161,6 +185,7 @@ void ObservationReader::read_header_line(std::string_view line, std::string_view
   if (label == "ANTENNA: DELTA H/E/N")
     if (const auto delta = vector_of(kVector)) recording_.antenna_offset_enu = {(*delta)(1), (*delta)(2), (*delta)(0)};
   if (major_ > 2 && label == "SYS / # / OBS TYPES") read_types3(line);
+  if (major_ > 2 && label == "SYS / SCALE FACTOR") read_factor(line);
   if (major_ == 2 && label == "# / TYPES OF OBSERV") read_types2(line);
   if (label == "GLONASS SLOT / FRQ #") read_slots(line);
   if (label == "TIME OF FIRST OBS") {
@@ -187,7 +212,47 @@ void ObservationReader::read_types3(std::string_view line) {
     types.emplace_back(used ? type[0] : ' ', Signal{type[1], type.size() > 2 ? type[2] : 'C'});
   }
   has_types_ = true;
-  types_.at(static_cast<std::size_t>(*system)).set(types);
+  set_types3(*system);
+}
+
+void ObservationReader::set_types3(SatelliteSystem system) {
+  const auto s = static_cast<std::size_t>(system);
+  types_.at(s).set(types3_.at(s), factors_.at(s));
+}
+
+void ObservationReader::begin_factor(std::string_view line) {
+  const auto factor = integer_field(line, 2, 4);
+  if (!factor || (*factor != 1 && *factor != 10 && *factor != 100 && *factor != 1000))
+    lines_.refuse(fmt::format("the scale factor {}", in_quotes(trimmed(field(line, 2, 4)))), "1, 10, 100 or 1000",
+                  "Stored numbers are divided by it; see the receiver's or the converter's own description.");
+  const bool all = trimmed(field(line, 8, 2)).empty();
+  const auto announced = all ? 0 : integer_field(line, 8, 2);
+  if (!announced || *announced < 0)
+    lines_.refuse(fmt::format("{} types with a scale factor", in_quotes(trimmed(field(line, 8, 2)))),
+                  "their number, or nothing for all of the system");
+  scaled_ = {line[0], static_cast<double>(*factor), static_cast<std::size_t>(*announced), 0};
+  if (scaled_.announced > 0) return;
+  if (const auto system = record::system_of(line[0])) factors_.at(static_cast<std::size_t>(*system)) = {scaled_.factor, {}};
+}
+
+void ObservationReader::read_factor(std::string_view line) {
+  constexpr std::size_t kFirst = 11, kStep = 4, kPerLine = 12;
+  const bool continues = line[0] == ' ';
+  if (continues != (scaled_.listed < scaled_.announced))
+    lines_.refuse(in_quotes(line), continues ? "a system and its scale factor"
+                                             : fmt::format("{} more types of {} with the scale factor before",
+                                                           scaled_.announced - scaled_.listed, scaled_.system));
+  if (!continues) begin_factor(line);
+  const auto system = record::system_of(scaled_.system);
+  for (std::size_t i = 0; i < kPerLine; ++i) {
+    const std::string_view type = trimmed(field(line, kFirst + kStep * i, 3));
+    if (type.empty()) break;
+    if (++scaled_.listed > scaled_.announced)
+      lines_.refuse(fmt::format("more types with a scale factor of {} than announced", scaled_.system),
+                    fmt::format("{}", scaled_.announced));
+    if (system) factors_.at(static_cast<std::size_t>(*system)).by_type[std::string(type)] = scaled_.factor;
+  }
+  if (system) set_types3(*system);
 }
 
 void ObservationReader::read_types2(std::string_view line) {
@@ -216,7 +281,7 @@ void ObservationReader::set_types2() {
                                          : letter,
                          signal_of_rinex2(letter, band, static_cast<SatelliteSystem>(s), types2_));
     }
-    types_[s].set(types);
+    types_[s].set(types, {});
   }
 }
 
@@ -233,6 +298,9 @@ void ObservationReader::check_header() const {
   if (!has_types_)
     lines_.refuse("the end of the header", major_ == 2 ? "# / TYPES OF OBSERV" : "SYS / # / OBS TYPES",
                   "Without it nobody knows what the columns are.");
+  if (scaled_.listed < scaled_.announced)
+    lines_.refuse(fmt::format("{} types with a scale factor of {}", scaled_.listed, scaled_.system),
+                  fmt::format("the {} announced", scaled_.announced));
   if (major_ == 2 && types2_.size() < announced2_)
     lines_.refuse(fmt::format("{} types of observations", types2_.size()), fmt::format("the {} announced", announced2_));
 }
@@ -352,8 +420,9 @@ void ObservationReader::take(std::string_view line, std::size_t at, std::size_t 
   if (!satellite_) return;
   const ObservationType type = types_.at(static_cast<std::size_t>(satellite_->system)).columns[column];
   if (type.quantity == ' ' || trimmed(field(line, at, kNumber)).empty()) return;
-  const auto value = number_field(line, at, kNumber);
+  auto value = number_field(line, at, kNumber);
   if (!value) return count(spoiled_, epoch_.t);
+  *value /= type.factor;
   if (*value == 0.0) return;
   const double largest = type.quantity == 'C' ? 1e9 : type.quantity == 'L' ? 1e11 : type.quantity == 'D' ? 1e6 : 1e3;
   if (std::abs(*value) > largest || (type.quantity == 'C' && *value < 0.0)) return count(impossible_, epoch_.t);
