@@ -68,7 +68,7 @@ INSTANTIATE_TEST_SUITE_P(
                             "lever_arm_m: [-0.3, 0.2, 1.1]", 0, "The recording shows the antenna at (0.3"},
                     Mistake{"arm_millimetres", "lever_arm_m: [0.29999999999999999, -0.20000000000000001, -1.1000000000000001]",
                             "lever_arm_m: [300, -200, -1100]", 2, "millimetres"}),
-    [](const auto& info) { return std::string(info.param.name); });
+    [](const auto& tested) { return std::string(tested.param.name); });
 
 TEST(Verdict, IsThatOfTheWorstCheck) {
   const Check good{"a", 0.1, 1.0, 2.0, "a is fine"};

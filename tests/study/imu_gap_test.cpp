@@ -84,7 +84,7 @@ INSTANTIATE_TEST_SUITE_P(Gaps, ImuGap,
                                          Case{"start", {{0.5, 10.0}}}, Case{"end", {{345.0, 14.0}}},
                                          Case{"many", {{100.0, 0.3}, {110.0, 0.6}, {120.0, 1.2}, {130.0, 0.5}}},
                                          Case{"minute", {{150.0, 60.0}}}, Case{"minute_without_fixes", {{150.0, 60.0}}, false}),
-                         [](const auto& info) { return std::string(info.param.name); });
+                         [](const auto& tested) { return std::string(tested.param.name); });
 
 // The rest of the mission comes an hour later: the clock moves on, the vehicle does not.
 TEST(ImuGap, OfAnHour) {
