@@ -1,6 +1,7 @@
 #include "propagation.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 #include "coast/geo/earth.hpp"
 
@@ -36,7 +37,7 @@ Propagation::Propagation(const Mission& mission, const StateLayout& layout)
 void Propagation::set(const Navigator::Start& start) {
   navigator_.set(start);
   transition_.reset();
-  gap_ = 0.0;
+  gap_ = gap_before_ = 0.0;
 }
 
 void Propagation::correct(const record::NavState& nav, const Eigen::VectorXd& x) {
@@ -46,7 +47,13 @@ void Propagation::correct(const record::NavState& nav, const Eigen::VectorXd& x)
 
 void Propagation::step(const SampleStep& step) {
   if (step.span) missing_share_ = missing_share(mission_.imu, *step.span);
-  transition_.add(navigator_.propagate(step.raw));
+  if (missing_share_ == 0.0) gap_before_ = 0.0;
+  SampleDynamics dynamics = navigator_.propagate(step.raw);
+  if (step.coasting) {  // the assumed motion does not depend on tilt and sensor errors
+    dynamics.dv_e.setZero();
+    dynamics.C_b_e.setZero();
+  }
+  transition_.add(dynamics);
   gap_ += missing_share_ * step.raw.dt;
   if (transition_.substep_due()) fold();
   navigator_.set_time(step.at);
@@ -76,12 +83,15 @@ void Propagation::follow_noise_level() {
 
 void Propagation::add_gap_noise(Eigen::MatrixXd& P) {
   if (gap_ == 0.0) return;
-  const double psi = kGapRateSd * gap_;
-  const double v = kGapForceSd * gap_;
+  // Constant errors all along the gap, however many intervals it has.
+  const double grown = std::pow(gap_before_ + gap_, 2) - gap_before_ * gap_before_;  // s^2
+  gap_before_ += gap_;
+  const double psi2 = kGapRateSd * kGapRateSd * grown;
+  const double v2 = kGapForceSd * kGapForceSd * grown;
   const Eigen::Matrix3d C_n_e = geo::C_n_e(geo::geodetic_from_ecef(navigator_.nav().r_eb_e));
-  add_bounded(P.block<3, 3>(kPsi, kPsi), C_n_e, psi * psi, {kGapTiltMax, kGapTiltMax, kGapHeadingMax});
-  add_bounded(P.block<3, 3>(kVel, kVel), C_n_e, v * v, Eigen::Vector3d::Constant(kGapVelocityMax));
-  P.diagonal().segment<3>(kPos).array() += 0.25 * v * v * gap_ * gap_;
+  add_bounded(P.block<3, 3>(kPsi, kPsi), C_n_e, psi2, {kGapTiltMax, kGapTiltMax, kGapHeadingMax});
+  add_bounded(P.block<3, 3>(kVel, kVel), C_n_e, v2, Eigen::Vector3d::Constant(kGapVelocityMax));
+  P.diagonal().segment<3>(kPos).array() += 0.25 * std::pow(kGapForceSd * gap_ * gap_, 2);
   gap_ = 0.0;
 }
 

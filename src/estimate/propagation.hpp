@@ -27,6 +27,7 @@ struct SampleStep {
   geo::GpsTime at;             ///< its end
   bool whole = true;           ///< it ends a sample
   std::optional<double> span;  ///< s since the sample before, where it begins one
+  bool coasting = false;       ///< in place of samples that are missing for long
 };
 
 /// Goes through the samples up to `end`, or to where they end. `take` is called with each step, propagates the navigator and
@@ -38,7 +39,8 @@ void walk(const record::ImuRecording& imu, SampleCursor& cursor, geo::GpsTime en
     const geo::GpsTime now = navigator.nav().t;
     const record::ImuSample& sample = imu.samples[cursor.next_sample];
     SampleStep step{increment_from(imu, cursor.next_sample, cursor.remainder, now), sample.t, true, {}};
-    if (is_long_gap(imu, sample.dt)) step.raw = navigator.coasting(step.raw.dt);
+    step.coasting = is_long_gap(imu, sample.dt);
+    if (step.coasting) step.raw = navigator.coasting(step.raw.dt);
     if (cursor.remainder.dt == 0.0) step.span = sample.t - now;
     cursor.remainder.dt = 0.0;
     if (end - now < step.raw.dt - kTimeTolerance) {
@@ -83,6 +85,7 @@ class Propagation {
   std::size_t noise_level_ = 0;  ///< of the recording, the one at hand
   double missing_share_ = 0.0;   ///< of the sample at hand
   double gap_ = 0.0;             ///< s of missing IMU in the interval
+  double gap_before_ = 0.0;      ///< s that the same gap has lasted before it
 };
 
 /// Of an interval between two samples, the share that was not measured; jitter of the tags is none.

@@ -65,7 +65,7 @@ INSTANTIATE_TEST_SUITE_P(
     testing::Values(Mistake{"none", "schema", "schema", 0, "verdict: good"},
                     Mistake{"z_up", "axes: [x, y, z]", "axes: [x, -y, -z]", 3, "axes: ["},
                     Mistake{"arm_signs", "lever_arm_m: [0.29999999999999999, -0.20000000000000001, -1.1000000000000001]",
-                            "lever_arm_m: [-0.3, 0.2, 1.1]", 0, "The recording shows the antenna at (0.3"},
+                            "lever_arm_m: [-0.3, 0.2, 1.1]", 0, "The recording shows the antenna at ("},
                     Mistake{"arm_millimetres", "lever_arm_m: [0.29999999999999999, -0.20000000000000001, -1.1000000000000001]",
                             "lever_arm_m: [300, -200, -1100]", 2, "millimetres"}),
     [](const auto& tested) { return std::string(tested.param.name); });
