@@ -87,7 +87,7 @@ ins::InitialState align_around_gaps(const ins::AlignmentInput& input, bool vehic
 PreparedMission::PreparedMission(record::ImuRecording imu, record::GnssRecording gnss, Setup setup, const Progress& progress)
     : imu_(std::move(imu)), gnss_(std::move(gnss)), setup_(std::move(setup)) {
   check_overlap(imu_, gnss_);
-  leave_out_gross_errors(gnss_, adaptations_);
+  if (setup_.unstated.time_offset || setup_.unstated.noise.gnss_scale) leave_out_gross_errors(gnss_, adaptations_);
   take_out_velocity_lag();
   find_standstill();
   choose_time_offset(progress);
