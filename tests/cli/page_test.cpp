@@ -258,7 +258,7 @@ TEST_F(PageTest, FullResultHasEverySectionInOrder) {
   expect_sound(page);
   EXPECT_EQ(section_ids(page), (std::vector<std::string>{"input", "trajectory", "motion", "separation", "innovations",
                                                          "sensors", "body", "outages", "reference", "processing"}));
-  EXPECT_EQ(page.tiles.size(), 7U);
+  EXPECT_EQ(page.tiles.size(), 8U);
 }
 
 TEST_F(PageTest, WhatARunDidNotFindOutIsLeftOut) {
