@@ -108,6 +108,7 @@ ins::InitialState start_of(const GivenStart& start, geo::GpsTime near) {
 
 study::Setup setup_of(const RunConfig& config, const Recordings& recordings, const std::optional<study::OutageSweep>& sweep) {
   study::Setup setup = config.setup;
+  setup.unstated = {};  // what is not stated is tested by `process` alone: outages and diagnoses compare stated models
   setup.carrier = recordings.carrier;
   const geo::GpsTime first_fix = recordings.gnss.fixes.front().t;
   if (config.start) setup.start = start_of(*config.start, first_fix);

@@ -435,6 +435,7 @@ void process(const std::filesystem::path& run_yaml, const CommonOptions& options
   line.clear();
 
   study::Setup setup = setup_of(config, recordings, config.sweep);
+  setup.unstated = config.setup.unstated;
   leave_time_to_the_filter(config, recordings, setup);
   print_inspection(recordings, options.quiet);
   refuse_hopeless(config, recordings);

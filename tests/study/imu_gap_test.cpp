@@ -79,8 +79,8 @@ TEST_P(ImuGap, IsPassedAndTheTrajectoryIsRightOutsideIt) {
 
 INSTANTIATE_TEST_SUITE_P(Gaps, ImuGap,
                          testing::Values(Case{"tenth", {{150.0, 0.1}}}, Case{"half_second", {{150.0, 0.5}}},
-                                         Case{"second_at_rest", {{10.0, 1.0}}}, Case{"three_seconds", {{200.0, 3.0}}},
-                                         Case{"three_seconds_without_fixes", {{200.0, 3.0}}, false},
+                                         Case{"second_at_rest", {{10.0, 1.0}}}, Case{"three_seconds", {{150.0, 3.0}}},
+                                         Case{"three_seconds_without_fixes", {{150.0, 3.0}}, false},
                                          Case{"start", {{0.5, 10.0}}}, Case{"end", {{345.0, 14.0}}},
                                          Case{"many", {{100.0, 0.3}, {110.0, 0.6}, {120.0, 1.2}, {130.0, 0.5}}},
                                          Case{"minute", {{150.0, 60.0}}}, Case{"minute_without_fixes", {{150.0, 60.0}}, false}),
