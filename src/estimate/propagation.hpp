@@ -39,7 +39,7 @@ void walk(const record::ImuRecording& imu, SampleCursor& cursor, geo::GpsTime en
     const geo::GpsTime now = navigator.nav().t;
     const record::ImuSample& sample = imu.samples[cursor.next_sample];
     SampleStep step{increment_from(imu, cursor.next_sample, cursor.remainder, now), sample.t, true, {}};
-    step.coasting = is_long_gap(imu, sample.dt);
+    step.coasting = is_long_gap(imu, cursor.next_sample > 0 ? sample.t - imu.samples[cursor.next_sample - 1].t : sample.dt);
     if (step.coasting) step.raw = navigator.coasting(step.raw.dt);
     if (cursor.remainder.dt == 0.0) step.span = sample.t - now;
     cursor.remainder.dt = 0.0;

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cerrno>
 #include <cstring>
+#include <functional>
 #include <mutex>
 #include <vector>
 
@@ -23,7 +24,7 @@ struct Unfinished {
   std::vector<fs::path> parts;
 };
 Unfinished& unfinished() {
-  static auto& files = *new Unfinished;
+  static const std::reference_wrapper<Unfinished> files(*new Unfinished);
   return files;
 }
 

@@ -10,8 +10,8 @@ namespace coast::study {
 namespace {
 
 constexpr double kAcceleration = 30.0;  // m/s^2
-constexpr double kSigmas = 6.0;
-constexpr double kLeast = 5.0;        // m: smaller errors are the gate's business
+constexpr double kErrorSigmas = 6.0;
+constexpr double kLeastError = 5.0;   // m: smaller errors are the gate's business
 constexpr double kLongestGap = 60.0;  // s to a neighbour; beyond it nothing is known
 
 // By how much the distance from the line exceeds what is possible, m; at most zero for a possible fix.
@@ -20,7 +20,7 @@ double excess(const record::GnssFix& before, const record::GnssFix& fix, const r
   if (a > kLongestGap || b > kLongestGap) return 0.0;
   const Eigen::Vector3d line = (b * before.r_ea_e + a * after.r_ea_e) / (a + b);
   const double variance = fix.position_cov_n.trace() + before.position_cov_n.trace() + after.position_cov_n.trace();
-  return (fix.r_ea_e - line).norm() - std::max(kLeast, 0.5 * kAcceleration * a * b + kSigmas * std::sqrt(variance));
+  return (fix.r_ea_e - line).norm() - std::max(kLeastError, 0.5 * kAcceleration * a * b + kErrorSigmas * std::sqrt(variance));
 }
 
 }  // namespace

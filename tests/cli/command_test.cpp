@@ -32,15 +32,6 @@ start_gps: {week: 2374, sow: 208800}
 seed: 4
 )";
 
-constexpr const char* kShortScenario = R"(
-schema: coast.scenario/1
-trajectory: {kind: city, duration_s: 220, static_s: 20, origin_deg_m: [46.52, 6.57, 400], course_deg: 30}
-imu: {rate_hz: 50, error_model: model.yaml, lever_arm_m: [0.3, -0.2, -1.1]}
-gnss: {rate_hz: 2, sd_m: [0.01, 0.01, 0.02]}
-start_gps: {week: 2374, sow: 208800}
-seed: 5
-)";
-
 /// A simulated recording, made once for the tests of this file.
 const fs::path& recording() {
   static const test::TemporaryDirectory folder;
@@ -113,7 +104,7 @@ TEST(Commands, ProcessesWhatSimulateWroteAndRepeatsItFromTheResolvedFile) {
 
 TEST(Commands, RepeatsAFitOfNoiseAndTimeOffsetFromTheResolvedFile) {
   const test::TemporaryDirectory folder;
-  const fs::path made = simulated_recording(kShortScenario, folder.path());
+  const fs::path made = simulated_recording(kShortDrive, folder.path());
   std::string text = text_of(made / "run.yaml");
   const auto insert_after = [&text](const std::string& key, const std::string& inserted) {
     const auto at = text.find(key);

@@ -16,15 +16,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr const char* kDrive = R"(
-schema: coast.scenario/1
-trajectory: {kind: city, duration_s: 220, static_s: 20, origin_deg_m: [46.52, 6.57, 400], course_deg: 30}
-imu: {rate_hz: 50, error_model: model.yaml, lever_arm_m: [0.3, -0.2, -1.1]}
-gnss: {rate_hz: 2, sd_m: [0.01, 0.01, 0.02]}
-start_gps: {week: 2374, sow: 208800}
-seed: 5
-)";
-
 constexpr const char* kTable =
     "time_s,gyro_x_radps,gyro_y_radps,gyro_z_radps,accel_x_mps2,accel_y_mps2,accel_z_mps2\n1,0,0,0,0,0,-9.8\n";
 
@@ -57,7 +48,7 @@ TEST(OutputSafety, SimulateLeavesAnImuFileOfTheUserAlone) {
   const test::TemporaryDirectory folder;
   fs::create_directories(folder.path() / "rec");
   write(folder.path() / "rec" / "imu.csv", kTable);
-  write(folder.path() / "scenario.yaml", kDrive);
+  write(folder.path() / "scenario.yaml", kShortDrive);
   write(folder.path() / "model.yaml", kTestModel);
   const Outcome outcome = simulated_again(folder.path());
   EXPECT_EQ(outcome.status, 2);
@@ -68,7 +59,7 @@ TEST(OutputSafety, SimulateLeavesAnImuFileOfTheUserAlone) {
 
 TEST(OutputSafety, ReplacesWhatItWroteItselfUnlessItWasChanged) {
   const test::TemporaryDirectory folder;
-  const fs::path made = simulated_recording(kDrive, folder.path());
+  const fs::path made = simulated_recording(kShortDrive, folder.path());
   EXPECT_EQ(simulated_again(folder.path()).status, 0);
   fs::remove(made / ".coast-results");  // as an earlier version left it
   const Outcome unmarked = simulated_again(folder.path());
@@ -82,7 +73,7 @@ TEST(OutputSafety, ReplacesWhatItWroteItselfUnlessItWasChanged) {
 TEST(OutputSafety, NoJobReplacesItsInput) {
   const test::TemporaryDirectory folder;
   const std::string here = folder.path().string();
-  const fs::path made = simulated_recording(kDrive, folder.path());
+  const fs::path made = simulated_recording(kShortDrive, folder.path());
   const std::string imu = text_of(made / "imu.csv");
   write(made / "pair.yaml",
         "schema: coast.array/1\nimus:\n  - {name: a, file: imu.csv, gps_week: 2374, error_model: error_model.yaml}\n"
@@ -103,7 +94,7 @@ TEST(OutputSafety, NoJobReplacesItsInput) {
 TEST(OutputSafety, LostOutputIsAnError) {
   if (!fs::exists("/dev/full")) GTEST_SKIP() << "no /dev/full here";
   const test::TemporaryDirectory folder;
-  const fs::path truth = simulated_recording(kDrive, folder.path()) / "truth.nav";
+  const fs::path truth = simulated_recording(kShortDrive, folder.path()) / "truth.nav";
   const std::string compare = fmt::format("compare '{0}' '{0}'", truth.string());
   for (const std::string& command : {std::string("--help"), compare})
     for (const char* lost : {">/dev/full", ">&-"}) {
@@ -117,7 +108,7 @@ TEST(OutputSafety, LostOutputIsAnError) {
 
 TEST(OutputSafety, TheNextRunRemovesThePartsOfDeadProcesses) {
   const test::TemporaryDirectory folder;
-  const fs::path made = simulated_recording(kDrive, folder.path());
+  const fs::path made = simulated_recording(kShortDrive, folder.path());
   const std::string dead = fmt::format(".part-{}", dead_process());
   const std::string alive = fmt::format("imu.csv.part-{}", ::getpid());
   for (const std::string& name : {"imu.csv" + dead, "mine.csv" + dead, alive}) write(made / name, "half");
@@ -130,7 +121,7 @@ TEST(OutputSafety, TheNextRunRemovesThePartsOfDeadProcesses) {
 
 TEST(OutputSafety, AnInterruptedRunLeavesNoParts) {
   const test::TemporaryDirectory folder;
-  std::string text = kDrive;
+  std::string text = kShortDrive;
   text.replace(text.find("duration_s: 220"), 15, "duration_s: 6000");
   write(folder.path() / "scenario.yaml", text);
   write(folder.path() / "model.yaml", kTestModel);

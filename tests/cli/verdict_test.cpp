@@ -15,18 +15,9 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr const char* kScenario = R"(
-schema: coast.scenario/1
-trajectory: {kind: city, duration_s: 220, static_s: 20, origin_deg_m: [46.52, 6.57, 400], course_deg: 30}
-imu: {rate_hz: 50, error_model: model.yaml, lever_arm_m: [0.3, -0.2, -1.1]}
-gnss: {rate_hz: 2, sd_m: [0.01, 0.01, 0.02]}
-start_gps: {week: 2374, sow: 208800}
-seed: 5
-)";
-
-const fs::path& recording() {
+const fs::path& short_drive() {
   static const test::TemporaryDirectory folder;
-  static const fs::path made = simulated_recording(kScenario, folder.path());
+  static const fs::path made = simulated_recording(kShortDrive, folder.path());
   return made;
 }
 
@@ -43,11 +34,11 @@ class OneMistake : public testing::TestWithParam<Mistake> {};
 TEST_P(OneMistake, IsToldByStatusAndWords) {
   const test::TemporaryDirectory folder;
   const Mistake& mistake = GetParam();
-  std::string yaml = text_of(recording() / "run.yaml");
+  std::string yaml = text_of(short_drive() / "run.yaml");
   const auto at = yaml.find(mistake.from);
   ASSERT_NE(at, std::string::npos) << yaml;
   yaml.replace(at, std::string(mistake.from).size(), mistake.to);
-  const fs::path file = recording() / fmt::format("{}.yaml", mistake.name);
+  const fs::path file = short_drive() / fmt::format("{}.yaml", mistake.name);
   write(file, yaml);
   const Outcome outcome =
       run(fmt::format("process '{}' --out '{}'", file.string(), (folder.path() / "out").string()), folder.path());
