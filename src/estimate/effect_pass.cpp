@@ -32,6 +32,7 @@ class DrivenColumns {
     SampleCursor cursor{knot.next_sample, knot.remainder};
     walk(mission_.imu, cursor, end, navigator_, [&](const SampleStep& step) { take(step, cursor.next_sample); });
     close_fold();
+    if (restart_at(mission_, end) != nullptr) W_.middleRows<3>(kPsi).setZero();
   }
   [[nodiscard]] const NavRows& W() const { return W_; }
 

@@ -90,6 +90,7 @@ void ForwardPass::skip_measurements(geo::GpsTime before) {
   const std::vector<record::MemberBlocks::Block>& blocks = member_blocks();
   while (next_block_ < blocks.size() && middle(blocks[next_block_]) < before) ++next_block_;
   while (next_stop_ < options_.knots_at.size() && options_.knots_at[next_stop_] < before) ++next_stop_;
+  while (next_restart_ < mission_.restarts.size() && mission_.restarts[next_restart_].nav.t < before) ++next_restart_;
 }
 
 std::size_t ForwardPass::gnss_epochs() const {
@@ -107,6 +108,7 @@ geo::GpsTime ForwardPass::next_knot_time(geo::GpsTime end) const {
   const std::vector<record::MemberBlocks::Block>& blocks = member_blocks();
   if (next_block_ < blocks.size()) t = std::min(t, middle(blocks[next_block_]));
   if (next_stop_ < options_.knots_at.size()) t = std::min(t, options_.knots_at[next_stop_]);
+  if (next_restart_ < mission_.restarts.size()) t = std::min(t, mission_.restarts[next_restart_].nav.t);
   return t;
 }
 
@@ -153,6 +155,8 @@ void ForwardPass::knot() {
   while (next_block_ < blocks.size() && middle(blocks[next_block_]) - state_.nav.t <= kTimeTolerance)
     member_updates(next_block_++);
   while (next_stop_ < options_.knots_at.size() && options_.knots_at[next_stop_] - state_.nav.t <= kTimeTolerance) ++next_stop_;
+  while (next_restart_ < mission_.restarts.size() && mission_.restarts[next_restart_].nav.t - state_.nav.t <= kTimeTolerance)
+    ++next_restart_;
   vehicle_updates();
   propagation_.correct(state_.nav, state_.x);
   if (outputs_.epochs) cov_at_start_ = nav_covariance_n(state_.P.topLeftCorner<kNav, kNav>(), state_.nav.r_eb_e);

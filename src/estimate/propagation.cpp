@@ -9,15 +9,25 @@ namespace coast::estimate {
 
 namespace {
 
-// What is not known of the motion while IMU samples are missing: constant errors of the bridged rate and specific force.
+// What is not known of the motion while IMU samples are missing: errors of the bridged rate and specific force that last for
+// a manoeuvre.
 constexpr double kGapRateSd = 0.3;   // rad/s
 constexpr double kGapForceSd = 3.0;  // m/s^2
+constexpr double kManoeuvre = 0.5;   // s, correlation time
 // However long the gap, a land, sea or air vehicle comes out of it near level and at a speed of its kind. The heading may be
 // any; the filter is linear, and does not gain by more than this.
 constexpr double kGapTiltMax = 0.25;      // rad
 constexpr double kGapHeadingMax = 1.0;    // rad
 constexpr double kGapVelocityMax = 30.0;  // m/s
-constexpr double kLongGap = 1.0;          // s
+constexpr double kLongGap = 5.0;          // s
+constexpr double kLostPosition = 100.0;   // m
+
+// Of the integral over t of an exponentially correlated error of unit variance, s^2: t^2 of a short one, 2 tau t of a long one,
+// however many intervals it is cut into.
+double integrated_variance(double t) {
+  const double periods = t / kManoeuvre;
+  return 2.0 * kManoeuvre * kManoeuvre * (periods + std::expm1(-periods));
+}
 
 // Adds variance along N, E and D, to at most the bound of each axis.
 void add_bounded(Eigen::Ref<Eigen::MatrixXd> P, const Eigen::Matrix3d& C_n_e, double added, const Eigen::Vector3d& largest_sd) {
@@ -83,8 +93,7 @@ void Propagation::follow_noise_level() {
 
 void Propagation::add_gap_noise(Eigen::MatrixXd& P) {
   if (gap_ == 0.0) return;
-  // Constant errors all along the gap, however many intervals it has.
-  const double grown = std::pow(gap_before_ + gap_, 2) - gap_before_ * gap_before_;  // s^2
+  const double grown = integrated_variance(gap_before_ + gap_) - integrated_variance(gap_before_);
   gap_before_ += gap_;
   const double psi2 = kGapRateSd * kGapRateSd * grown;
   const double v2 = kGapForceSd * kGapForceSd * grown;
@@ -99,6 +108,38 @@ void Propagation::close(Eigen::MatrixXd& P) {
   fold();
   transition_.propagate_covariance(P);
   add_gap_noise(P);
+  if (const Restart* at = restart_at(mission_, navigator_.nav().t)) restart(*at, P);
+}
+
+// Fixes in the gap and behind it keep position and velocity, in which the filter is linear. Where there were none for long, the
+// start's are better, and a covariance of kilometres beside centimetres would cost the digits.
+void Propagation::restart(const Restart& at, Eigen::MatrixXd& P) {
+  record::NavState nav = navigator_.nav();
+  const Eigen::Matrix3d C_n_e = geo::C_n_e(geo::geodetic_from_ecef(at.nav.r_eb_e));
+  const auto anew = [&](int first, const Eigen::Vector3d& sd_n) {
+    P.middleRows<3>(first).setZero();
+    P.middleCols<3>(first).setZero();
+    P.block<3, 3>(first, first) = C_n_e * sd_n.cwiseAbs2().asDiagonal() * C_n_e.transpose();
+    transition_.forget(first);
+  };
+  if (at.sd_attitude_n) {
+    anew(kPsi, *at.sd_attitude_n);
+    nav.q_b_e = at.nav.q_b_e;
+  }
+  if (P.block<3, 3>(kPos, kPos).trace() > kLostPosition * kLostPosition) {
+    anew(kPos, at.sd_position_n);
+    anew(kVel, at.sd_velocity_n);
+    nav.r_eb_e = at.nav.r_eb_e;
+    nav.v_eb_e = at.nav.v_eb_e;
+    tie_position_to_fixes(layout_, P);
+  }
+  navigator_.correct(nav, navigator_.x());
+}
+
+const Restart* restart_at(const Mission& mission, geo::GpsTime t) {
+  const auto found = std::ranges::find_if(
+      mission.restarts, [t](const Restart& restart) { return std::abs(restart.nav.t - t) <= kTimeTolerance; });
+  return found == mission.restarts.end() ? nullptr : &*found;
 }
 
 bool is_long_gap(const record::ImuRecording& imu, double span) {

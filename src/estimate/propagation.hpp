@@ -77,6 +77,7 @@ class Propagation {
   void fold();
   void follow_noise_level();
   void add_gap_noise(Eigen::MatrixXd& P);
+  void restart(const Restart& at, Eigen::MatrixXd& P);
 
   const Mission& mission_;
   const StateLayout& layout_;
@@ -87,6 +88,9 @@ class Propagation {
   double gap_ = 0.0;             ///< s of missing IMU in the interval
   double gap_before_ = 0.0;      ///< s that the same gap has lasted before it
 };
+
+/// The restart at that instant, if there is one.
+[[nodiscard]] const Restart* restart_at(const Mission& mission, geo::GpsTime t);
 
 /// Of an interval between two samples, the share that was not measured; jitter of the tags is none.
 [[nodiscard]] double missing_share(const record::ImuRecording& imu, double span);

@@ -4,25 +4,23 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "coast/geo/earth.hpp"
 #include "coast/geo/rotation.hpp"
 #include "coast/geo/units.hpp"
 #include "coast/ins/compensation.hpp"
 #include "coast/record/error.hpp"
-#include "coast/study/plausibility.hpp"
 #include "gross_errors.hpp"
 #include "gyro_start.hpp"
+#include "restart.hpp"
 #include "reversed_state.hpp"
 #include "stage.hpp"
-#include "velocity_lag.hpp"
 
 namespace coast::study {
 
 namespace {
 
-constexpr double kRefineWindow = 300.0;  // s that the start is refined over
+constexpr double kFirstMinutes = 300.0;  // s that the start is refined over
 constexpr double kFitWindow = 1200.0;    // s that noise is fitted over
 constexpr double kShortestFit = 100.0;   // s: fewer say too little of correlated errors
 
@@ -46,21 +44,9 @@ double largest(const noise::ImuErrorModel& model, noise::Sensor sensor) {
   return value;
 }
 
-// Of the used GNSS innovations; 1 where the noise is as stated.
-double nis_over_expected(const std::vector<estimate::InnovationRecord>& innovations) {
-  double nis = 0.0, dof = 0.0;
-  for (const estimate::InnovationRecord& r : innovations) {
-    if (!r.used || !(estimate::is_position(r.kind) || r.kind == estimate::UpdateKind::kGnssVelocity)) continue;
-    nis += r.nis;
-    dof += r.dof;
-  }
-  return dof > 0.0 ? nis / dof : 1.0;
-}
-
 // Where a gap of the IMU stands between the first epoch and the motion that shows the heading, the alignment begins behind it.
 ins::InitialState align_around_gaps(const ins::AlignmentInput& input, bool vehicle_forward) {
-  constexpr double kGap = 1.0;  // s
-  const auto long_gap = [](const record::ImuSample& sample) { return sample.dt > kGap; };
+  const auto long_gap = [](const record::ImuSample& sample) { return sample.dt > kLongGap; };
   const std::vector<record::ImuSample>& samples = input.imu.samples;
   auto gap = std::ranges::find_if(samples, long_gap);
   if (gap == samples.end()) return ins::align(input, vehicle_forward);
@@ -97,6 +83,7 @@ PreparedMission::PreparedMission(record::ImuRecording imu, record::GnssRecording
     mission_->increments = ins::IncrementKind::kCompensated;
   }
   if (!setup_.start) run_back_to_first_epoch();
+  restart_behind_gaps();
   const double coarse_offset = mission_->time_offset_s;
   const double stated_offset_sd = setup_.filter.auxiliary.time_offset_sd_s;
   test_time_offset();
@@ -115,149 +102,9 @@ PreparedMission::PreparedMission(record::ImuRecording imu, record::GnssRecording
     refine_start(progress);
     refine_antenna(progress);
   }
+  restart_behind_gaps();
   note_adaptations();
   mission_->carrier = setup_.carrier.get();
-}
-
-// The filter over the first minutes, as far as the start may look.
-estimate::FilterResult PreparedMission::first_minutes(estimate::FilterOptions options) const {
-  geo::GpsTime end = start_.nav.t + kRefineWindow;
-  if (setup_.refine_before) {
-    end = std::min(end, *setup_.refine_before);
-    options.withheld.push_back({*setup_.refine_before, *setup_.refine_before + kRefineWindow});
-  }
-  const estimate::ForwardFilter filter(*mission_, setup_.model, options);
-  return filter.run_until(start_state(filter), end, {});
-}
-
-// Turns tell a shift of the times to some 0.05 s, and now and then a false one. It is taken where the filter finds the fixes
-// likelier by it; the gate is open, so that both see the same fixes.
-void PreparedMission::choose_time_offset(const Progress& progress) {
-  if (!setup_.unstated.time_offset || setup_.start || setup_.unstated.time_offset_seen_s == 0.0) return;
-  constexpr double kCoarse = 0.4;  // s: the state of the offset finds what is nearer
-  const estimate::FilterOptions stated = setup_.filter;
-  setup_.filter.gate_probability = 0.0;
-  const auto log_likelihood_at = [&](double offset) {
-    setup_.time_offset_s = mission_->time_offset_s = offset;
-    try {
-      align(progress);
-      run_back_to_first_epoch();
-      refine_start(progress);
-      return first_minutes(setup_.filter).log_likelihood;
-    } catch (const NumericalError&) {
-      return -std::numeric_limits<double>::infinity();
-    }
-  };
-  // Between fixes the course is not seen: a neighbouring maximum lies an interval of theirs away.
-  const double seen = setup_.unstated.time_offset_seen_s;
-  const double interval = (gnss_.fixes.back().t - gnss_.fixes.front().t) / static_cast<double>(gnss_.fixes.size());
-  double best = 0.0, most = log_likelihood_at(0.0);
-  for (const double offset : {seen, seen - interval, seen + interval}) {
-    if (offset != seen && interval < kCoarse) break;
-    const double log_likelihood = log_likelihood_at(offset);
-    if (log_likelihood <= most) continue;
-    most = log_likelihood;
-    best = offset;
-  }
-  setup_.filter = stated;
-  setup_.time_offset_s = mission_->time_offset_s = best;
-  start_sensor_errors_.resize(0);
-}
-
-// The filter with the offset as a state. Where noise is stated too small, its sigma and its gain are as much too good as the
-// innovations are too large.
-void PreparedMission::test_time_offset() {
-  constexpr double kPriorSd = 0.5;  // s
-  constexpr double kLeast = 3e-3;   // s: less moves a car by centimetres
-  constexpr double kSigmas = 6.0;
-  constexpr double kLeastGain = 15.0;  // of the log-likelihood
-  double& sd = setup_.filter.auxiliary.time_offset_sd_s;
-  if (!setup_.unstated.time_offset || setup_.start || sd > 0.0) return;
-  estimate::FilterOptions options = setup_.filter;
-  options.gate_probability = 0.0;
-  const estimate::FilterResult without = first_minutes(options);
-  options.auxiliary.time_offset_sd_s = kPriorSd;
-  const estimate::FilterResult with = first_minutes(options);
-  const Eigen::Index at = *estimate::ForwardFilter(*mission_, setup_.model, options).layout().time_offset();
-  const double excess = std::max(1.0, nis_over_expected(with.innovations));
-  const double offset = with.last.x(at);
-  const double offset_sd = std::sqrt(excess * with.last.P(at, at));
-  const bool shown = std::abs(offset) > std::max(kLeast, kSigmas * offset_sd) &&
-                     with.log_likelihood - without.log_likelihood > kLeastGain * excess;
-  if (shown || setup_.time_offset_s != 0.0) sd = std::max(0.1, 2.0 * std::abs(offset));
-}
-
-void PreparedMission::take_out_velocity_lag() {
-  if (!setup_.unstated.time_offset || !setup_.filter.use_gnss_velocity) return;
-  velocity_lag_ = velocity_lag(gnss_);
-  if (velocity_lag_) advance_velocities(gnss_, *velocity_lag_);
-}
-
-// Sigmas of innovations that do not fit say that noise is stated wrongly, whatever the data sheet; so does an IMU whose errors
-// the model holds for impossible.
-void PreparedMission::test_noise() {
-  constexpr double kSmallest = 0.7, kLargest = 1.4;  // of the normalised innovations squared over their expectation
-  constexpr double kRefused = 0.05;
-  constexpr double kImpossible = 6.0;  // prior sigmas
-  constexpr double kShaken = 8.0;      // times the white noise
-  constexpr std::size_t kFewest = 100;
-  const estimate::NoiseFitChoice& choice = setup_.unstated.noise;
-  if (!(choice.gnss_scale || choice.imu_white_noise)) return;
-  const Eigen::VectorXd found = start_sensor_errors_;
-  const ins::InitialState start = start_;
-  refine_start({});
-  const estimate::FilterResult seen = first_minutes(setup_.filter);
-  const estimate::StateLayout layout = estimate::ForwardFilter(*mission_, setup_.model, setup_.filter).layout();
-  const auto worst = largest_sensor_error(layout, seen.last.x);
-  start_ = start;
-  start_sensor_errors_ = found;
-  const auto innovations = static_cast<double>(seen.innovations.size());
-  const auto refused = static_cast<double>(std::ranges::count(seen.innovations, false, &estimate::InnovationRecord::used));
-  const double ratio = nis_over_expected(seen.innovations);
-  // Innovations that are too small are the fixes' stated noise: no IMU noise makes them so.
-  const bool fits = (ratio > kSmallest || !choice.gnss_scale) && ratio < kLargest && refused < kRefused * innovations;
-  const bool possible = !worst || worst->sigmas < kImpossible;
-  if (seen.innovations.size() < kFewest || (fits && possible)) return;
-  if (!setup_.noise_fit) setup_.noise_fit = estimate::NoiseFitChoice{false, false, false};
-  setup_.noise_fit->gnss_scale |= choice.gnss_scale;
-  setup_.noise_fit->correlated_gnss |= choice.correlated_gnss;
-  setup_.noise_fit->imu_white_noise |= choice.imu_white_noise;
-  noise_ratio_ = ratio;
-  if (!choice.imu_white_noise || !has_gain_errors(setup_.model)) return;
-  if (vibration_over_white_noise(imu_, setup_.model) < kShaken) return;
-  setup_.model = without_gain_errors(setup_.model, imu_.rate_hz);
-  start_sensor_errors_.resize(0);  // they were of the other layout
-  gain_errors_left_out_ = true;
-}
-
-void PreparedMission::note_adaptations() {
-  constexpr double kNoted = 1e-3;  // s
-  const auto note = [this](const char* kind, std::string text) {
-    adaptations_.push_back({record::Event::Severity::kInfo, kind, std::move(text), std::nullopt, 1});
-  };
-  if (setup_.unstated.time_offset && std::abs(mission_->time_offset_s) > kNoted)
-    note(
-        "time_offset_found",
-        fmt::format("The recording shows a time offset, which the run file does not state: gnss.time_offset_s: {:.4f} is used.",
-                    mission_->time_offset_s));
-  if (velocity_lag_)
-    note("velocity_lag_removed",
-         fmt::format("GNSS velocities come {:.2f} s after the positions of the same file; they were moved to them.",
-                     *velocity_lag_));
-  if (gain_errors_left_out_)
-    note("gain_errors_left_out",
-         "The IMU shakes far beyond its stated noise: scale factors and misalignments cannot be told from the shaking and are "
-         "left "
-         "out of the error model (imu.noise: {without_gain_errors: true}).");
-  if (!noise_ratio_ || !noise_fit_) return;
-  const estimate::NoiseAdjustment& a = noise_fit_->adjustment;
-  note("noise_adapted",
-       fmt::format(
-           "Squared innovations are {:.2g} times what the stated noise predicts. Fitted and used in its place: gyro noise "
-           "times {:.3g}, accelerometer noise times {:.3g}, GNSS sigmas times {:.3g} horizontally and {:.3g} vertically "
-           "with errors of {:.2g} and {:.2g} m that last {:.2g} s. `noise: stated` keeps what is stated.",
-           *noise_ratio_, a.gyro_factor, a.accel_factor, a.gnss_scale.horizontal, a.gnss_scale.vertical,
-           a.correlated_gnss.horizontal_m, a.correlated_gnss.vertical_m, a.correlated_gnss.time_s));
 }
 
 // Noise comes first: with noise stated far too small neither the gate nor an offset means anything. The second fit starts
@@ -276,7 +123,7 @@ void PreparedMission::fit_and_adopt(const Progress& progress) {
     setup_.filter = stated;
     estimate::NoiseFitChoice choice = *setup_.noise_fit;
     choice.to_the_optimum = last;
-    noise_fit_ = fit(choice, from, last ? longest : std::min(kRefineWindow, longest), progress);
+    noise_fit_ = fit(choice, from, last ? longest : std::min(kFirstMinutes, longest), progress);
     adopt(*noise_fit_);
     // A correlated error that was found to be nothing begins small again: at nothing its gradient vanishes.
     from = noise_fit_->adjustment;
@@ -375,24 +222,29 @@ void PreparedMission::run_back_to_first_epoch() {
   start_sensor_errors_ = at_first.x.head(filter.layout().sensor_end());
 }
 
+estimate::FilterResult PreparedMission::first_minutes(estimate::FilterOptions options,
+                                                      const estimate::FilterOutputs& outputs) const {
+  geo::GpsTime end = start_.nav.t + kFirstMinutes;
+  if (setup_.refine_before) {
+    end = std::min(end, *setup_.refine_before);
+    options.withheld.push_back({*setup_.refine_before, *setup_.refine_before + kFirstMinutes});  // the fix at the end too
+  }
+  const estimate::ForwardFilter filter(*mission_, setup_.model, options);
+  return filter.run_until(start_state(filter), end, outputs);
+}
+
 // Gauss-Newton on the start: the filter is linearised about a start that the data themselves have corrected. The uncertainty
 // stays that of the alignment, so no fix counts twice for more than its linearisation.
 void PreparedMission::refine_start(const Progress& progress) {
   if (setup_.start) return;  // what the user gave stays
   constexpr int kRounds = 4;
-  geo::GpsTime end = start_.nav.t + kRefineWindow;
-  estimate::FilterOptions options = setup_.filter;
-  if (setup_.refine_before) {
-    end = std::min(end, *setup_.refine_before);
-    options.withheld.push_back({*setup_.refine_before, *setup_.refine_before + kRefineWindow});  // the fix at the end too
-  }
-  const estimate::ForwardFilter filter(*mission_, setup_.model, options);
+  const estimate::ForwardFilter filter(*mission_, setup_.model, setup_.filter);
   for (int round = 0; round < kRounds; ++round) {
     if (progress) progress("refining the start", static_cast<double>(round) / kRounds);
     estimate::KnotStore first;
     estimate::FilterOutputs outputs;
     outputs.knots = &first;
-    static_cast<void>(filter.run_until(start_state(filter), end, outputs));
+    static_cast<void>(first_minutes(setup_.filter, outputs));
     const estimate::SmoothedKnot knot = estimate::smooth(first, filter.layout()).front();
     const auto change = estimate::error_between(knot.nav, start_.nav);
     start_.nav = knot.nav;
@@ -400,6 +252,13 @@ void PreparedMission::refine_start(const Progress& progress) {
     constexpr double kSettled = 1e-8;  // rad; convergence is quadratic
     if (change.segment<3>(estimate::kPsi).norm() < kSettled) break;
   }
+}
+
+void PreparedMission::restart_behind_gaps() {
+  Setup found = setup_;
+  found.time_offset_s = mission_->time_offset_s;
+  found.lever_arm_b = mission_->lever_arm_b;
+  mission_->restarts = restarts_behind_gaps(imu_, gnss_, found);
 }
 
 void PreparedMission::adopt(const estimate::NoiseFit& fit) {
@@ -425,7 +284,9 @@ estimate::NoiseFit PreparedMission::fit(const estimate::NoiseFitChoice& choice, 
                                  mission_->time_offset_s,
                                  mission_->standstill,
                                  mission_->earth_rate,
-                                 mission_->first_epoch};
+                                 mission_->first_epoch,
+                                 nullptr,
+                                 mission_->restarts};
   return estimate::fit_noise(
       window, setup_.model, setup_.filter, choice, from,
       [this](const estimate::ForwardFilter& filter) { return start_state(filter); }, stage(progress, "fitting the noise"));

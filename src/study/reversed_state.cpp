@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "restart.hpp"
+
 namespace coast::study {
 
 ReversedRun::ReversedRun(const estimate::Mission& forward, const record::ImuRecording& imu, const record::GnssRecording& gnss,
@@ -19,6 +21,7 @@ ReversedRun::ReversedRun(const estimate::Mission& forward, const record::ImuReco
   for (const estimate::TimeSpan& span : forward.standstill)
     mission_.standstill.push_back({ins::mirrored(span.to, mirror), ins::mirrored(span.from, mirror)});
   std::ranges::reverse(mission_.standstill);
+  mission_.restarts = restarts_at_fixes(imu, gnss, mission_.time_offset_s, mission_.lever_arm_b);
   if (forward.carrier == nullptr) return;
   carrier_ = estimate::reversed(*forward.carrier, mirror);
   mission_.carrier = &*carrier_;

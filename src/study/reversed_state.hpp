@@ -14,10 +14,8 @@ class ReversedRun {
   ReversedRun& operator=(const ReversedRun&) = delete;
   /// Reverses the recordings in place; they must outlive the run.
   ReversedRun(const estimate::Mission& forward, record::ImuRecording& imu, record::GnssRecording& gnss, geo::GpsTime mirror)
-      : ReversedRun(forward, imu, gnss, mirror, AlreadyReversed{}) {
-    ins::reverse(imu, mirror, forward.increments);
-    ins::reverse(gnss, mirror);
-  }
+      : ReversedRun(forward, (ins::reverse(imu, mirror, forward.increments), imu), (ins::reverse(gnss, mirror), gnss), mirror,
+                    AlreadyReversed{}) {}
   ReversedRun(const estimate::Mission& forward, const record::ImuRecording& imu, const record::GnssRecording& gnss,
               geo::GpsTime mirror, AlreadyReversed);
 

@@ -79,22 +79,25 @@ TEST_P(ImuGap, IsPassedAndTheTrajectoryIsRightOutsideIt) {
 
 INSTANTIATE_TEST_SUITE_P(Gaps, ImuGap,
                          testing::Values(Case{"tenth", {{150.0, 0.1}}}, Case{"half_second", {{150.0, 0.5}}},
-                                         Case{"second_at_rest", {{10.0, 1.0}}}, Case{"three_seconds", {{150.0, 3.0}}},
-                                         Case{"three_seconds_without_fixes", {{150.0, 3.0}}, false},
+                                         Case{"second_at_rest", {{10.0, 1.0}}}, Case{"three_seconds", {{200.0, 3.0}}},
+                                         Case{"three_seconds_without_fixes", {{200.0, 3.0}}, false},
                                          Case{"start", {{0.5, 10.0}}}, Case{"end", {{345.0, 14.0}}},
+                                         Case{"several_long", {{60.0, 5.0}, {130.0, 20.0}, {230.0, 10.0}}, false},
                                          Case{"many", {{100.0, 0.3}, {110.0, 0.6}, {120.0, 1.2}, {130.0, 0.5}}},
                                          Case{"minute", {{150.0, 60.0}}}, Case{"minute_without_fixes", {{150.0, 60.0}}, false}),
                          [](const auto& tested) { return std::string(tested.param.name); });
 
-// The rest of the mission comes five minutes later: the clock moves on, the vehicle does not.
-TEST(ImuGap, OfFiveMinutes) {
+class HourWithoutImu : public testing::TestWithParam<double> {};
+
+// The rest of the mission comes an hour later: the clock moves on, the vehicle does not.
+TEST_P(HourWithoutImu, EndsInANewStart) {
   const simulate::Scenario scenario = test::drive(360.0, 22);
   simulate::SimulatedMission recording = simulate::simulate(scenario);
-  constexpr double kPause = 300.0;
-  const geo::GpsTime parting = recording.imu.samples.front().t + 15.0;  // at rest
+  constexpr double kPause = 3600.0;
+  const geo::GpsTime parting = recording.imu.samples.front().t + GetParam();
   for (record::ImuSample& s : recording.imu.samples)
     if (s.t > parting) s.t = s.t + kPause;
-  cut(recording.imu, {15.0, kPause});
+  cut(recording.imu, {GetParam(), kPause});
   for (record::GnssFix& fix : recording.gnss.fixes)
     if (fix.t > parting) fix.t = fix.t + kPause;
   const PreparedMission mission(std::move(recording.imu), std::move(recording.gnss), test::setup_of(scenario), {});
@@ -103,6 +106,8 @@ TEST(ImuGap, OfFiveMinutes) {
   EXPECT_LT((solution.forward.last.nav.r_eb_e - truth.r_eb_e).norm(), 0.1);
   EXPECT_TRUE(solution.forward.last.P.allFinite());
 }
+
+INSTANTIATE_TEST_SUITE_P(RestDriveAndTurn, HourWithoutImu, testing::Values(15.0, 150.0, 200.0));
 
 }  // namespace
 }  // namespace coast::study

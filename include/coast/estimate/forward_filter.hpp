@@ -31,6 +31,15 @@ struct Withheld {
   [[nodiscard]] bool contains(geo::GpsTime t) const { return from <= t && t < to; }
 };
 
+/// What is known of the motion behind a long gap of the IMU without what was before it: by then the heading may be any, and a
+/// linear filter does not find it back.
+struct Restart {
+  record::NavState nav;  ///< takes the place of the filter's attitude at nav.t; of position and velocity where those are lost
+  Eigen::Vector3d sd_position_n;
+  Eigen::Vector3d sd_velocity_n;
+  std::optional<Eigen::Vector3d> sd_attitude_n;  ///< rotations about N, E, D; absent: the attitude stays the filter's
+};
+
 /// What is filtered. The recordings must outlive the filter.
 struct Mission {
   const record::ImuRecording& imu;  ///< body axes
@@ -45,6 +54,7 @@ struct Mission {
   std::optional<geo::GpsTime> first_epoch = {};
   /// Tight coupling: these are used in place of the fixes. Must outlive the filter.
   const CarrierObservations* carrier = nullptr;
+  std::vector<Restart> restarts = {};  ///< ascending; each becomes a knot
 };
 
 /// Factors on the stated GNSS standard deviations.

@@ -74,6 +74,9 @@ class TransitionAccumulator {
   /// Folds what is pending. @param gravity_gradient dg/dr at the position, 1/s^2
   void fold(const Eigen::Matrix3d& gravity_gradient);
 
+  /// Three navigation states are found anew at the end of the interval: nothing of it reaches them.
+  void forget(int first_state) { Phi_n_.middleRows<3>(first_state).setZero(); }
+
   [[nodiscard]] const NavRows& Phi_n() const { return Phi_n_; }
   [[nodiscard]] const NavCov& Q_n() const { return Q_n_; }
   [[nodiscard]] double elapsed() const { return elapsed_; }

@@ -105,7 +105,10 @@ class PreparedMission {
   void test_time_offset();
   void test_noise();
   void note_adaptations();
-  [[nodiscard]] estimate::FilterResult first_minutes(estimate::FilterOptions options) const;
+  void restart_behind_gaps();
+  /// The filter over them, as far as the start may look.
+  [[nodiscard]] estimate::FilterResult first_minutes(estimate::FilterOptions options,
+                                                     const estimate::FilterOutputs& outputs = {}) const;
 
   record::ImuRecording imu_;
   record::GnssRecording gnss_;

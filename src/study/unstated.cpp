@@ -1,0 +1,161 @@
+// What the configuration leaves to the data: each is tested, and taken where the data show it.
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "coast/record/error.hpp"
+#include "coast/study/mission.hpp"
+#include "coast/study/plausibility.hpp"
+#include "velocity_lag.hpp"
+
+namespace coast::study {
+
+namespace {
+
+// Of the used GNSS innovations; 1 where the noise is as stated.
+double nis_over_expected(const std::vector<estimate::InnovationRecord>& innovations) {
+  double nis = 0.0, dof = 0.0;
+  for (const estimate::InnovationRecord& r : innovations) {
+    if (!r.used || !(estimate::is_position(r.kind) || r.kind == estimate::UpdateKind::kGnssVelocity)) continue;
+    nis += r.nis;
+    dof += r.dof;
+  }
+  return dof > 0.0 ? nis / dof : 1.0;
+}
+
+}  // namespace
+
+// Turns tell a shift of the times to some 0.05 s, and now and then a false one. It is taken where the filter finds the fixes
+// likelier by it; the gate is open, so that both see the same fixes.
+void PreparedMission::choose_time_offset(const Progress& progress) {
+  if (!setup_.unstated.time_offset || setup_.start || setup_.unstated.time_offset_seen_s == 0.0) return;
+  constexpr double kCoarse = 0.4;  // s: the state of the offset finds what is nearer
+  const estimate::FilterOptions stated = setup_.filter;
+  setup_.filter.gate_probability = 0.0;
+  const auto log_likelihood_at = [&](double offset) {
+    setup_.time_offset_s = mission_->time_offset_s = offset;
+    try {
+      align(progress);
+      run_back_to_first_epoch();
+      refine_start(progress);
+      return first_minutes(setup_.filter).log_likelihood;
+    } catch (const NumericalError&) {
+      return -std::numeric_limits<double>::infinity();
+    }
+  };
+  // Between fixes the course is not seen: a neighbouring maximum lies an interval of theirs away.
+  const double seen = setup_.unstated.time_offset_seen_s;
+  const double interval = (gnss_.fixes.back().t - gnss_.fixes.front().t) / static_cast<double>(gnss_.fixes.size());
+  double best = 0.0, most = log_likelihood_at(0.0);
+  for (const double offset : {seen, seen - interval, seen + interval}) {
+    if (offset != seen && interval < kCoarse) break;
+    const double log_likelihood = log_likelihood_at(offset);
+    if (log_likelihood <= most) continue;
+    most = log_likelihood;
+    best = offset;
+  }
+  setup_.filter = stated;
+  setup_.time_offset_s = mission_->time_offset_s = best;
+  start_sensor_errors_.resize(0);
+}
+
+// The filter with the offset as a state. Where noise is stated too small, its sigma and its gain are as much too good as the
+// innovations are too large.
+void PreparedMission::test_time_offset() {
+  constexpr double kPriorSd = 0.5;  // s
+  constexpr double kLeast = 3e-3;   // s: less moves a car by centimetres
+  constexpr double kSigmas = 6.0;
+  constexpr double kLeastGain = 15.0;  // of the log-likelihood
+  double& sd = setup_.filter.auxiliary.time_offset_sd_s;
+  if (!setup_.unstated.time_offset || setup_.start || sd > 0.0) return;
+  estimate::FilterOptions options = setup_.filter;
+  options.gate_probability = 0.0;
+  const estimate::FilterResult without = first_minutes(options);
+  options.auxiliary.time_offset_sd_s = kPriorSd;
+  const estimate::FilterResult with = first_minutes(options);
+  const Eigen::Index at = *estimate::ForwardFilter(*mission_, setup_.model, options).layout().time_offset();
+  const double excess = std::max(1.0, nis_over_expected(with.innovations));
+  const double offset = with.last.x(at);
+  const double offset_sd = std::sqrt(excess * with.last.P(at, at));
+  const bool shown = std::abs(offset) > std::max(kLeast, kSigmas * offset_sd) &&
+                     with.log_likelihood - without.log_likelihood > kLeastGain * excess;
+  if (shown || setup_.time_offset_s != 0.0) sd = std::max(0.1, 2.0 * std::abs(offset));
+}
+
+void PreparedMission::take_out_velocity_lag() {
+  if (!setup_.unstated.time_offset || !setup_.filter.use_gnss_velocity) return;
+  velocity_lag_ = velocity_lag(gnss_);
+  if (velocity_lag_) advance_velocities(gnss_, *velocity_lag_);
+}
+
+// Sigmas of innovations that do not fit say that noise is stated wrongly, whatever the data sheet; so does an IMU whose errors
+// the model holds for impossible.
+void PreparedMission::test_noise() {
+  constexpr double kSmallest = 0.7, kLargest = 1.4;  // of the normalised innovations squared over their expectation
+  constexpr double kRefused = 0.05;
+  constexpr double kImpossible = 6.0;  // prior sigmas
+  constexpr double kShaken = 8.0;      // times the white noise
+  constexpr std::size_t kFewest = 100;
+  const estimate::NoiseFitChoice& choice = setup_.unstated.noise;
+  if (!(choice.gnss_scale || choice.imu_white_noise)) return;
+  const Eigen::VectorXd found = start_sensor_errors_;
+  const ins::InitialState start = start_;
+  refine_start({});
+  const estimate::FilterResult seen = first_minutes(setup_.filter);
+  const estimate::StateLayout layout = estimate::ForwardFilter(*mission_, setup_.model, setup_.filter).layout();
+  const auto worst = largest_sensor_error(layout, seen.last.x);
+  start_ = start;
+  start_sensor_errors_ = found;
+  const auto innovations = static_cast<double>(seen.innovations.size());
+  const auto refused = static_cast<double>(std::ranges::count(seen.innovations, false, &estimate::InnovationRecord::used));
+  const double ratio = nis_over_expected(seen.innovations);
+  // Innovations that are too small are the fixes' stated noise: no IMU noise makes them so.
+  const bool fits = (ratio > kSmallest || !choice.gnss_scale) && ratio < kLargest && refused < kRefused * innovations;
+  const bool possible = !worst || worst->sigmas < kImpossible;
+  if (seen.innovations.size() < kFewest || (fits && possible)) return;
+  if (!setup_.noise_fit) setup_.noise_fit = estimate::NoiseFitChoice{false, false, false};
+  setup_.noise_fit->gnss_scale |= choice.gnss_scale;
+  setup_.noise_fit->correlated_gnss |= choice.correlated_gnss;
+  setup_.noise_fit->imu_white_noise |= choice.imu_white_noise;
+  noise_ratio_ = ratio;
+  if (!choice.imu_white_noise || !has_gain_errors(setup_.model)) return;
+  if (vibration_over_white_noise(imu_, setup_.model) < kShaken) return;
+  setup_.model = without_gain_errors(setup_.model, imu_.rate_hz);
+  start_sensor_errors_.resize(0);  // they were of the other layout
+  gain_errors_left_out_ = true;
+}
+
+void PreparedMission::note_adaptations() {
+  constexpr double kNoted = 1e-3;  // s
+  const auto note = [this](const char* kind, std::string text) {
+    adaptations_.push_back({record::Event::Severity::kInfo, kind, std::move(text), std::nullopt, 1});
+  };
+  if (setup_.unstated.time_offset && std::abs(mission_->time_offset_s) > kNoted)
+    note(
+        "time_offset_found",
+        fmt::format("The recording shows a time offset, which the run file does not state: gnss.time_offset_s: {:.4f} is used.",
+                    mission_->time_offset_s));
+  if (velocity_lag_)
+    note("velocity_lag_removed",
+         fmt::format("GNSS velocities come {:.2f} s after the positions of the same file; they were moved to them.",
+                     *velocity_lag_));
+  if (gain_errors_left_out_)
+    note("gain_errors_left_out",
+         "The IMU shakes far beyond its stated noise: scale factors and misalignments cannot be told from the shaking and are "
+         "left "
+         "out of the error model (imu.noise: {without_gain_errors: true}).");
+  if (!noise_ratio_ || !noise_fit_) return;
+  const estimate::NoiseAdjustment& a = noise_fit_->adjustment;
+  note("noise_adapted",
+       fmt::format(
+           "Squared innovations are {:.2g} times what the stated noise predicts. Fitted and used in its place: gyro noise "
+           "times {:.3g}, accelerometer noise times {:.3g}, GNSS sigmas times {:.3g} horizontally and {:.3g} vertically "
+           "with errors of {:.2g} and {:.2g} m that last {:.2g} s. `noise: stated` keeps what is stated.",
+           *noise_ratio_, a.gyro_factor, a.accel_factor, a.gnss_scale.horizontal, a.gnss_scale.vertical,
+           a.correlated_gnss.horizontal_m, a.correlated_gnss.vertical_m, a.correlated_gnss.time_s));
+}
+
+}  // namespace coast::study
