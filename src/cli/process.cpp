@@ -364,6 +364,16 @@ void ProcessRun::separate_forward_and_backward() {
   result_.separations = std::move(recorder).in_order();
 }
 
+namespace {
+
+std::string drift_factors(const study::DriftFactors& drift) {
+  if (drift.largest() == 1.0) return "";
+  const auto three = [](const Eigen::Vector3d& v) { return fmt::format("[{:.17g}, {:.17g}, {:.17g}]", v.x(), v.y(), v.z()); };
+  return fmt::format(", drift_factors: {{gyro: {}, accel: {}}}", three(drift.gyro), three(drift.accel));
+}
+
+}  // namespace
+
 // What the run found stands in the resolved file as comments, ready to be stated in another run.
 void ProcessRun::note_estimates() const {
   if (mission_.options().auxiliary.time_offset_sd_s > 0.0 || mission_.mission().time_offset_s != config_.setup.time_offset_s)
@@ -376,8 +386,9 @@ void ProcessRun::note_estimates() const {
   const estimate::NoiseFitChoice& choice = *mission_.setup().noise_fit;
   if (choice.imu_white_noise)
     config_.root.at("imu").note_estimated(
-        "noise", fmt::format("{{gyro_factor: {:.17g}, accel_factor: {:.17g}{}}}", a.gyro_factor, a.accel_factor,
-                             mission_.gain_errors_left_out() ? ", without_gain_errors: true" : ""));
+        "noise",
+        fmt::format("{{gyro_factor: {:.17g}, accel_factor: {:.17g}{}{}}}", a.gyro_factor, a.accel_factor,
+                    drift_factors(mission_.drift()), mission_.gain_errors_left_out() ? ", without_gain_errors: true" : ""));
   if (choice.gnss_scale)
     config_.root.at("gnss").note_estimated(
         "noise",

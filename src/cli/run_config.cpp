@@ -59,6 +59,10 @@ void read_imu_noise(const Node& imu, study::Setup& setup, estimate::NoiseFitChoi
     factors.gyro_factor = given.number_within("gyro_factor", 1.0, 1e-3, 1e4);
     factors.accel_factor = given.number_within("accel_factor", 1.0, 1e-3, 1e4);
     setup.model = estimate::adjusted(setup.model, factors);
+    if (const auto drift = given.find("drift_factors")) {
+      const study::DriftFactors factors_of{positive3(drift->at("gyro")), positive3(drift->at("accel"))};
+      setup.model = study::with_drift_scaled(setup.model, 0.0, factors_of);
+    }
     if (given.flag("without_gain_errors", false)) setup.model = study::without_gain_errors(setup.model, 0.0);
   });
   choice.imu_white_noise = key == NoiseKey::kEstimated;

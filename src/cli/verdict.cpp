@@ -197,6 +197,11 @@ void add_jumps(const ProcessResult& result, std::vector<Check>& checks) {
                          jumps == 1 ? "" : "s", first->time->sow())});
 }
 
+void add_assumed_heading(const ProcessResult& result, std::vector<Check>& checks) {
+  const record::Event* assumed = find(result.events, "heading_assumed");
+  if (assumed != nullptr) checks.push_back({"heading_assumed", 1.0, 0.0, {}, "the heading rests on an assumption"});
+}
+
 // Mistakes in the order in which each hides the ones behind it.
 std::string likely_cause(const ProcessResult& result) {
   for (const char* kind : {"specific_force_size", "gravity_sign", "gravity_axis", "gyro_sign", "gyro_unit", "leap_second_shift",
@@ -213,6 +218,7 @@ Judgement judge(const ProcessResult& result, std::vector<Check> motion) {
   add_separation(result, judgement.checks);
   add_noise_fit(result, judgement.checks);
   add_jumps(result, judgement.checks);
+  add_assumed_heading(result, judgement.checks);
   if (judgement.standing() != Standing::kGood) judgement.likely_cause = likely_cause(result);
   return judgement;
 }

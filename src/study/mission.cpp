@@ -44,6 +44,13 @@ double largest(const noise::ImuErrorModel& model, noise::Sensor sensor) {
   return value;
 }
 
+// What `vehicle: car` says: the assumption that the heading rests on holds all along.
+void drive_like_a_car(estimate::FilterOptions& filter) {
+  filter.vehicle.non_holonomic = estimate::NonHolonomic{};
+  filter.vehicle.zero_velocity_sd_mps = 0.02;
+  filter.auxiliary.mounting_sd = 5.0 * geo::kDegree;
+}
+
 // Where a gap of the IMU stands between the first epoch and the motion that shows the heading, the alignment begins behind it.
 ins::InitialState align_around_gaps(const ins::AlignmentInput& input, bool vehicle_forward) {
   const auto long_gap = [](const record::ImuSample& sample) { return sample.dt > kLongGap; };
@@ -119,7 +126,7 @@ void PreparedMission::fit_and_adopt(const Progress& progress) {
   const double before_outages = setup_.fit_before ? *setup_.fit_before - start_.nav.t : kFitWindow;
   const double longest = before_outages < kShortestFit ? kFitWindow : std::min(kFitWindow, before_outages);
   for (const bool last : {false, true}) {
-    setup_.model = stated_model;
+    setup_.model = with_drift_scaled(stated_model, imu_.rate_hz, drift_);
     setup_.filter = stated;
     estimate::NoiseFitChoice choice = *setup_.noise_fit;
     choice.to_the_optimum = last;
@@ -130,6 +137,7 @@ void PreparedMission::fit_and_adopt(const Progress& progress) {
     from.correlated_gnss.horizontal_m = std::max(from.correlated_gnss.horizontal_m, first.correlated_gnss.horizontal_m);
     from.correlated_gnss.vertical_m = std::max(from.correlated_gnss.vertical_m, first.correlated_gnss.vertical_m);
     refine_start(progress);
+    adapt_drift();
     if (!last) {
       test_time_offset();  // beside noise that is stated wrongly an offset means nothing
       stated.auxiliary.time_offset_sd_s = setup_.filter.auxiliary.time_offset_sd_s;
@@ -186,9 +194,26 @@ void PreparedMission::align(const Progress& progress) {
     density = std::max(density, std::sqrt(setup_.model.white_density(noise::Sensor::kGyro, axis).value));
   record::GnssRecording in_imu_time = gnss_;
   for (record::GnssFix& fix : in_imu_time.fixes) fix.t = fix.t - setup_.time_offset_s;
-  start_ = align_around_gaps({imu_, in_imu_time, setup_.lever_arm_b, density, largest(setup_.model, noise::Sensor::kGyro),
-                              largest(setup_.model, noise::Sensor::kAccel)},
-                             setup_.vehicle_forward);
+  const ins::AlignmentInput input{imu_,
+                                  in_imu_time,
+                                  setup_.lever_arm_b,
+                                  density,
+                                  largest(setup_.model, noise::Sensor::kGyro),
+                                  largest(setup_.model, noise::Sensor::kAccel)};
+  heading_assumed_ = false;
+  try {
+    start_ = align_around_gaps(input, setup_.vehicle_forward);
+  } catch (const NumericalError&) {
+    if (setup_.vehicle_forward || !setup_.unstated.time_offset) throw;
+    const std::exception_ptr without_assumption = std::current_exception();
+    try {
+      start_ = align_around_gaps(input, true);
+      heading_assumed_ = true;
+      drive_like_a_car(setup_.filter);
+    } catch (const NumericalError&) {
+      std::rethrow_exception(without_assumption);
+    }
+  }
 }
 
 estimate::FilterState PreparedMission::start_state(const estimate::ForwardFilter& filter) const {

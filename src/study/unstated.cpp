@@ -128,6 +128,31 @@ void PreparedMission::test_noise() {
   gain_errors_left_out_ = true;
 }
 
+// EM on the drift of each axis, about the noise that was fitted; a few steps come within a tenth of its maximum.
+void PreparedMission::adapt_drift() {
+  constexpr double kContradicted = 2.0;  // times the stated sigma
+  constexpr double kLargest = 100.0;     // more is no drift of a bias but another mistake
+  constexpr double kSettled = 1.2;
+  constexpr int kRounds = 4;
+  if (!setup_.unstated.noise.imu_white_noise) return;
+  double least = kContradicted;
+  for (int round = 0; round < kRounds; ++round) {
+    estimate::KnotStore knots;
+    estimate::FilterOutputs outputs;
+    outputs.knots = &knots;
+    static_cast<void>(first_minutes(setup_.filter, outputs));
+    const estimate::StateLayout layout = estimate::ForwardFilter(*mission_, setup_.model, setup_.filter).layout();
+    const DriftFactors seen = drift_seen(layout, estimate::smooth(knots, layout, {}, estimate::KnotSampling(1.0)), least);
+    if (seen.largest() == 1.0) return;
+    const DriftFactors before = drift_;
+    drift_.gyro = drift_.gyro.cwiseProduct(seen.gyro).cwiseMin(kLargest);
+    drift_.accel = drift_.accel.cwiseProduct(seen.accel).cwiseMin(kLargest);
+    setup_.model = with_drift_scaled(setup_.model, imu_.rate_hz,
+                                     {drift_.gyro.cwiseQuotient(before.gyro), drift_.accel.cwiseQuotient(before.accel)});
+    least = kSettled;
+  }
+}
+
 void PreparedMission::note_adaptations() {
   constexpr double kNoted = 1e-3;  // s
   const auto note = [this](const char* kind, std::string text) {
@@ -147,6 +172,16 @@ void PreparedMission::note_adaptations() {
          "The IMU shakes far beyond its stated noise: scale factors and misalignments cannot be told from the shaking and are "
          "left "
          "out of the error model (imu.noise: {without_gain_errors: true}).");
+  if (heading_assumed_)
+    note("heading_assumed",
+         "Motion does not show the heading; it rests on the assumption that the body's x axis points where the vehicle goes "
+         "(vehicle: car). Where it does not, give the attitude under start:.");
+  if (drift_.largest() > 1.0)
+    note("bias_drift_adapted",
+         fmt::format("Biases drift more than the error model allows: gyro x, y, z {:.3g}, {:.3g}, {:.3g} times its sigma, "
+                     "accelerometer {:.3g}, {:.3g}, {:.3g} times; taken so (imu.noise.drift_factors). `noise: stated` keeps "
+                     "what is stated.",
+                     drift_.gyro.x(), drift_.gyro.y(), drift_.gyro.z(), drift_.accel.x(), drift_.accel.y(), drift_.accel.z()));
   if (!noise_ratio_ || !noise_fit_) return;
   const estimate::NoiseAdjustment& a = noise_fit_->adjustment;
   note("noise_adapted",

@@ -10,6 +10,7 @@
 #include "coast/estimate/forward_filter.hpp"
 #include "coast/estimate/noise_fit.hpp"
 #include "coast/ins/alignment.hpp"
+#include "coast/study/bias_drift.hpp"
 
 namespace coast::study {
 
@@ -71,6 +72,10 @@ class PreparedMission {
   [[nodiscard]] const record::Events& adaptations() const { return adaptations_; }
   /// Whether the error model is without what is multiplied by a signal, unlike that of the setup.
   [[nodiscard]] bool gain_errors_left_out() const { return gain_errors_left_out_; }
+  /// By how much biases drift more than the setup's error model says.
+  [[nodiscard]] const DriftFactors& drift() const { return drift_; }
+  /// The heading rests on the assumption that the body's x axis points where the vehicle goes.
+  [[nodiscard]] bool heading_assumed() const { return heading_assumed_; }
   /// The start for a filter of any layout.
   [[nodiscard]] estimate::FilterState start_state(const estimate::ForwardFilter& filter) const;
   /// Takes noise as fitted from here on.
@@ -104,6 +109,7 @@ class PreparedMission {
   void take_out_velocity_lag();
   void test_time_offset();
   void test_noise();
+  void adapt_drift();
   void note_adaptations();
   void restart_behind_gaps();
   /// The filter over them, as far as the start may look.
@@ -120,6 +126,8 @@ class PreparedMission {
   std::optional<double> noise_ratio_;  ///< squared innovations over their expectation, where that had the noise fitted
   std::optional<double> velocity_lag_;
   bool gain_errors_left_out_ = false;
+  bool heading_assumed_ = false;
+  DriftFactors drift_;
   record::Events adaptations_;
 };
 
