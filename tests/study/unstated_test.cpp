@@ -1,10 +1,13 @@
 // What a run file leaves unstated is taken from the recording where the recording shows it, and left alone where it does not.
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
 
 #include "coast/geo/earth.hpp"
+#include "coast/geo/units.hpp"
+#include "coast/record/error.hpp"
 #include "coast/study/mission.hpp"
 #include "coast/study/plausibility.hpp"
 #include "simulated.hpp"
@@ -56,6 +59,82 @@ TEST(Unstated, NoiseThatInnovationsContradictIsFitted) {
   ASSERT_TRUE(mission.noise_fit().has_value());
   // The accelerometer's white noise drives the velocity that 1600 fixes watch: known to some 10 %.
   EXPECT_NEAR(std::log(mission.noise_fit()->adjustment.accel_factor / kTooSmall), 0.0, 0.5);
+}
+
+// Three axes of each sensor drift, three correlation times long: a sigma is known to a factor of two at best.
+TEST(Unstated, DriftOfBiasesThatTheModelForbidsIsAdapted) {
+  simulate::Scenario scenario = test::drive(360.0, 39);
+  const auto model_of = [](double gyro_deg_h, double accel_mg) {
+    return noise::ImuErrorModel::from(io::parse_yaml(fmt::format(R"(
+schema: coast.imu_error_model/1
+gyro:
+  all: [{{process: white_noise, density: 0.1, unit: deg/sqrt(h)}}, {{process: random_constant, sigma: 5, unit: deg/h}},
+        {{process: gauss_markov, sigma: {}, unit: deg/h, correlation_time_s: 100}}]
+accel:
+  all: [{{process: white_noise, density: 60, unit: ug/sqrt(Hz)}}, {{process: random_constant, sigma: 1, unit: mg}},
+        {{process: gauss_markov, sigma: {}, unit: mg, correlation_time_s: 100}}]
+)",
+                                                                 gyro_deg_h, accel_mg),
+                                                     "model.yaml"));
+  };
+  constexpr double kTooSmall = 40.0;
+  scenario.error_model = model_of(400.0, 4.0);
+  simulate::SimulatedMission recording = simulate::simulate(scenario);
+  study::Setup setup = nothing_stated(scenario);
+  setup.model = model_of(400.0 / kTooSmall, 4.0 / kTooSmall);
+  const PreparedMission mission(std::move(recording.imu), std::move(recording.gnss), setup, {});
+  EXPECT_TRUE(adapted(mission, "bias_drift_adapted"));
+  EXPECT_NEAR(std::log(mission.drift().largest() / kTooSmall), 0.0, std::log(2.5));
+}
+
+TEST(Unstated, HeadingThatMotionDoesNotShowIsAssumedAndTold) {
+  simulate::Scenario scenario = simulate::Scenario::from(io::parse_yaml(R"(
+schema: coast.scenario/1
+trajectory: {kind: car_straight, duration_s: 300, static_s: 0, origin_deg_m: [46.52, 6.57, 400], course_deg: 65}
+imu: {rate_hz: 100, lever_arm_m: [0.3, -0.2, -1.1]}
+gnss: {rate_hz: 1, sd_m: [20, 20, 30]}
+start_gps: {week: 2374, sow: 208800}
+seed: 41
+)",
+                                                                        "scenario.yaml"),
+                                                         [](const std::filesystem::path& file) { return io::load_yaml(file); });
+  scenario.error_model = test::tactical_model();
+  simulate::SimulatedMission recording = simulate::simulate(scenario);
+  const record::NavState truth = recording.truth.states.back();
+  simulate::SimulatedMission same = recording;
+  EXPECT_THROW(PreparedMission(std::move(same.imu), std::move(same.gnss), test::setup_of(scenario), {}), NumericalError);
+  const PreparedMission mission(std::move(recording.imu), std::move(recording.gnss), nothing_stated(scenario), {});
+  EXPECT_TRUE(mission.heading_assumed());
+  EXPECT_TRUE(adapted(mission, "heading_assumed"));
+  const estimate::FilterState last = solve(mission, mission.options(), false, {}, {}).forward.last;
+  const Eigen::Vector3d psi = estimate::error_between(last.nav, truth).segment<3>(estimate::kPsi);
+  EXPECT_LT(psi.norm(), 5.0 * geo::kDegree);  // the mounting is assumed to 4 deg
+}
+
+TEST(BiasDrift, IsTheRootOfTheMeanSquareOverTheModels) {
+  const noise::ImuErrorModel model = noise::ImuErrorModel::from(io::parse_yaml(R"(
+schema: coast.imu_error_model/1
+gyro: {all: [{process: white_noise, density: 0.1, unit: deg/sqrt(h)}, {process: gauss_markov, sigma: 5, unit: deg/h, correlation_time_s: 80}]}
+accel: {all: [{process: white_noise, density: 60, unit: ug/sqrt(Hz)}, {process: random_constant, sigma: 1, unit: mg}]}
+)",
+                                                                               "model.yaml"));
+  const estimate::StateLayout layout(model, Eigen::Matrix3d::Identity(), {});
+  const double sigma = 5.0 * geo::kDegree / 3600.0;
+  std::vector<estimate::SmoothedKnot> knots(2);
+  for (estimate::SmoothedKnot& knot : knots) knot.x = knot.sd = Eigen::VectorXd::Zero(layout.size());
+  const auto y = std::ranges::find_if(layout.sensors(), [](const auto& block) { return block.axis == 1; });
+  knots[0].x(y->offset) = 4.0 * sigma;
+  knots[1].sd(y->offset) = 2.0 * sigma;
+  const DriftFactors seen = drift_seen(layout, knots, 2.0);
+  EXPECT_NEAR(seen.gyro.y(), std::sqrt(10.0), 1e-12);  // (16 + 4) / 2
+  EXPECT_EQ(seen.gyro.x(), 1.0);
+  EXPECT_EQ(seen.accel.maxCoeff(), 1.0);
+  const noise::ImuErrorModel scaled = with_drift_scaled(model, 100.0, seen);
+  const auto allan = [](const noise::ImuErrorModel& m, std::size_t axis) {
+    return *m.axes(noise::Sensor::kGyro)[axis][1]->allan_variance(30.0);
+  };
+  EXPECT_NEAR(allan(scaled, 1) / allan(model, 1), 10.0, 1e-9);
+  EXPECT_EQ(allan(scaled, 0), allan(model, 0));
 }
 
 TEST(Unstated, VelocitiesThatLagThePositionsAreMovedToThem) {
