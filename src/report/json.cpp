@@ -87,6 +87,10 @@ json write_series(const Series& series, const std::string& what) {
     require_length(series.x.size(), series.t.size(), what + ", t");
     node["t"] = pack_abscissae(series.t);
   }
+  if (!series.half_width.empty()) {
+    require_length(series.x.size(), series.half_width.size(), what + ", half width");
+    node["half_width"] = pack_floats(series.half_width);
+  }
   if (!series.breaks.empty()) node["breaks"] = series.breaks;
   put(node, "not_finite", series.not_finite);
   if (series.band) {
@@ -108,6 +112,10 @@ Series read_series(const json& node, const std::string& what) {
   if (node.contains("t")) {
     series.t = unpack(node.at("t"));
     require_length(series.x.size(), series.t.size(), what + ", t");
+  }
+  if (node.contains("half_width")) {
+    series.half_width = unpack(node.at("half_width"));
+    require_length(series.x.size(), series.half_width.size(), what + ", half width");
   }
   series.breaks = node.value("breaks", series.breaks);
   series.not_finite = node.value("not_finite", series.not_finite);

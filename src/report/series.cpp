@@ -9,6 +9,12 @@
 
 namespace coast::report {
 
+namespace {
+
+constexpr double kNoWidth = std::numeric_limits<double>::quiet_NaN();
+
+}  // namespace
+
 Decimator::Decimator(const DecimationOptions& options) : options_(options) {
   if (options.max_points < 16) {
     throw std::invalid_argument(fmt::format("Decimator: max_points = {}, expected >= 16", options.max_points));
@@ -16,23 +22,25 @@ Decimator::Decimator(const DecimationOptions& options) : options_(options) {
 }
 
 void Decimator::add(double x, double y) {
-  add_sample({x, y, static_cast<double>(samples_)}, Bounds{}, x);
+  add_sample({x, y, static_cast<double>(samples_), kNoWidth}, Bounds{}, x);
 }
 
 void Decimator::add(double x, double y, double lower, double upper) {
   Bounds bounds{lower, upper};
+  double half_width = 0.5 * (upper - lower);
   if (!std::isfinite(lower) || !std::isfinite(upper)) {
     ++not_finite_;
     bounds = Bounds{};
+    half_width = kNoWidth;
   } else {
     has_band_ = true;
   }
-  add_sample({x, y, static_cast<double>(samples_)}, bounds, x);
+  add_sample({x, y, static_cast<double>(samples_), half_width}, bounds, x);
 }
 
 void Decimator::add_track(double t, double x, double y) {
   track_ = true;
-  add_sample({x, y, t}, Bounds{}, t);
+  add_sample({x, y, t, kNoWidth}, Bounds{}, t);
 }
 
 void Decimator::add_sample(const Sample& sample, const Bounds& bounds, double step_coordinate) {
@@ -135,6 +143,7 @@ void Decimator::append_piece(std::size_t piece, Series& out) const {
     out.x.push_back(sample.x);
     out.y.push_back(sample.y);
     if (track_) out.t.push_back(sample.order);
+    if (has_band_) out.half_width.push_back(sample.half_width);
   };
   for (std::size_t i = begin; i < end; ++i) {
     std::vector<Sample> kept{along_y_[i].least, along_y_[i].greatest};
@@ -188,7 +197,8 @@ void require_equal_lengths(const Series& series) {
   const std::size_t n = series.x.size();
   const bool band_agrees = !series.band || (series.band->lower.size() == series.band->x.size() &&
                                             series.band->upper.size() == series.band->x.size());
-  if (series.y.size() != n || (!series.t.empty() && series.t.size() != n) || !band_agrees) {
+  if (series.y.size() != n || (!series.half_width.empty() && series.half_width.size() != n) ||
+      (!series.t.empty() && series.t.size() != n) || !band_agrees) {
     throw std::invalid_argument("decimate: the arrays of a series differ in length");
   }
 }
@@ -201,13 +211,16 @@ Series decimate(const Series& series, const DecimationOptions& options) {
   auto next_break = series.breaks.begin();
   for (std::size_t i = 0; i < series.x.size(); ++i) {
     for (; next_break != series.breaks.end() && *next_break <= i; ++next_break) curve.interrupt();
-    if (series.t.empty()) {
+    if (!series.half_width.empty()) {
+      curve.add(series.x[i], series.y[i], series.y[i] - series.half_width[i], series.y[i] + series.half_width[i]);
+    } else if (series.t.empty()) {
       curve.add(series.x[i], series.y[i]);
     } else {
       curve.add_track(series.t[i], series.x[i], series.y[i]);
     }
   }
   Series out = curve.finish();
+  out.band.reset();  // its own follows, on its own x
   out.not_finite += series.not_finite;
   if (series.band) {
     Decimator band(options);

@@ -31,6 +31,7 @@ Page full_page() {
   series.t = {5.0, 6.0, 7.0};
   series.breaks = {2};
   series.not_finite = 3;
+  series.half_width = {0.5, 0.25, 2.0};
   series.band = Series::Band{{0.0, 2.0}, {-1.0, -2.0}, {1.0, 2.0}, {1}};
   plot.lines = {{"line", series, Tone::kSmoothed, Line::Style::kSteps, "1 sigma", 2.0, true}};
   plot.points = {{"dots", series, Tone::kSingle, 3.0}};
@@ -60,6 +61,7 @@ TEST(PageJson, RoundTripKeepsEveryMember) {
   EXPECT_EQ(series.t, (std::vector<double>{5.0, 6.0, 7.0}));
   EXPECT_EQ(series.breaks, (std::vector<std::uint32_t>{2}));
   EXPECT_EQ(series.not_finite, 3U);
+  EXPECT_EQ(series.half_width, (std::vector<double>{0.5, 0.25, 2.0}));
   EXPECT_EQ(series.band->upper, (std::vector<double>{1.0, 2.0}));
   EXPECT_EQ(series.band->breaks, (std::vector<std::uint32_t>{1}));
   EXPECT_EQ(plot.lines.at(0).style, Line::Style::kSteps);

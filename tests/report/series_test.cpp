@@ -100,6 +100,21 @@ TEST_P(EveryLength, BandIsNowhereNarrowedBelowItsExtremes) {
   EXPECT_EQ(kept.band->x.back(), record.x.back());
 }
 
+// y = x and a half width of 1 + x: every kept sample must have its own, whatever the envelope around it is.
+TEST_P(EveryLength, KeptSamplesHaveTheHalfWidthTheyCameWith) {
+  Decimator decimator({64, 1e9});
+  for (std::size_t i = 0; i < GetParam(); ++i) {
+    const auto x = static_cast<double>(i);
+    decimator.add(x, x, -1.0, 1.0 + 2.0 * x);
+  }
+  const Series kept = decimator.finish();
+  ASSERT_EQ(kept.half_width.size(), kept.x.size());
+  for (std::size_t i = 0; i < kept.x.size(); ++i) EXPECT_EQ(kept.half_width[i], 1.0 + kept.x[i]);
+  const Series again = decimate(kept, {32, 1e9});
+  ASSERT_EQ(again.half_width.size(), again.x.size());
+  for (std::size_t i = 0; i < again.x.size(); ++i) EXPECT_EQ(again.half_width[i], 1.0 + again.x[i]);
+}
+
 // 62 and 63: the last length without loss and the first with; 4097: one over a power of two.
 INSTANTIATE_TEST_SUITE_P(Decimator, EveryLength, testing::Values(1, 2, 3, 62, 63, 64, 127, 1000, 4096, 4097, 54321));
 

@@ -15,7 +15,10 @@ struct Series {
   std::vector<double> y;
   std::vector<double> t;              ///< of a track: seconds since Page::start; ties the plan to the time axes. Else empty
   std::vector<std::uint32_t> breaks;  ///< the curve is interrupted before each of these indices; increasing
-  std::uint64_t not_finite = 0;       ///< values left out because they are not finite; said under the panel
+  /// Half the width of the band that each sample came with, NaN where it had none; empty without a band. The band itself is an
+  /// envelope of many samples once a curve is decimated; this is what the cursor reads.
+  std::vector<double> half_width;
+  std::uint64_t not_finite = 0;  ///< values left out because they are not finite; said under the panel
 
   /// Lower and upper bound, shaded. Has its own x: its extremes need not coincide with the curve's.
   struct Band {
@@ -39,7 +42,8 @@ struct DecimationOptions {
 /// So the extremes of every bucket, hence of the whole, and both ends of every uninterrupted piece are among the kept;
 /// nothing is lost up to max_points - 2 samples (a track: half of that). Of n samples a bucket holds at most about
 /// 4 n / max_points (a track: twice that).
-/// A band keeps the least lower and the greatest upper bound of each bucket, between its extremes (at an end: there).
+/// A band keeps the least lower and the greatest upper bound of each bucket, between its extremes (at an end: there); beside it
+/// each kept sample keeps the half width that it came with.
 /// A sample that is not finite is counted and interrupts the curve.
 class Decimator {
  public:
@@ -59,7 +63,8 @@ class Decimator {
   struct Sample {
     double x;
     double y;
-    double order;  ///< time of a track, else the number of the sample
+    double order;                                                  ///< time of a track, else the number of the sample
+    double half_width = std::numeric_limits<double>::quiet_NaN();  ///< of the band, at this very sample
   };
   struct Extremes {
     Sample least;

@@ -17,6 +17,7 @@ export interface Series {
   t: Numbers | null;
   breaks: Set<number>;
   band: Band | null;
+  halfWidth: Numbers | null; // of the band at each sample; the band of a decimated curve is an envelope
   sorted: boolean; // x never falls: binary search and thinning by pixel column apply
   notFinite: number;
 }
@@ -100,6 +101,7 @@ function decodeSeries(stored: StoredSeries): Series {
     t: stored.t ? unpack(stored.t) : null,
     breaks: new Set(stored.breaks ?? []),
     band: band ?? null,
+    halfWidth: stored.half_width ? unpack(stored.half_width) : null,
     sorted: isSorted(x),
     notFinite: (stored.not_finite ?? 0) + countNotFinite(y),
   };

@@ -11,6 +11,7 @@ export interface StoredSeries {
   x: Packed;
   y: Packed;
   t?: Packed;
+  half_width?: Packed;
   breaks?: number[];
   not_finite?: number;
   band?: { x: Packed; lower: Packed; upper: Packed; breaks?: number[] };

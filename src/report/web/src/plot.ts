@@ -146,8 +146,9 @@ export class PlotView implements Member {
     return this.x.min === home.min && this.x.max === home.max;
   }
 
-  private scales(): { x: Range; y: Range } {
-    return { x: this.x, y: this.y };
+  private scales(): { x: Range; y: Range; pixel: number } {
+    const width = this.u?.over.clientWidth ?? 0;
+    return { x: this.x, y: this.y, pixel: width > 0 ? (this.x.max - this.x.min) / width : Infinity };
   }
 
   private schedule(): void {

@@ -11,6 +11,7 @@ const REACH = 0.015; // share of the axis: a dot further from the cursor is not 
 interface Scales {
   x: Range;
   y: Range;
+  pixel: number; // in units of a linear x
 }
 
 export class Readout {
@@ -72,16 +73,24 @@ export class Readout {
     const name = this.stored.y.ticks?.find((t) => t[0] === series.y[i])?.[1];
     const log = this.stored.y.scale === "log";
     const write = (v: number) => (log ? v.toPrecision(3) : reading(v, scales.y.max - scales.y.min));
-    const text = name ?? write(series.y[i]) + this.width(curve, x, write);
+    const away = Math.abs(series.x[i] - x) > scales.pixel;
+    const at = away && this.stored.x.scale === "time" ? ` at ${series.x[i].toFixed(3)} s` : "";
+    const text = (name ?? write(series.y[i]) + this.width(curve, i, scales)) + at;
     this.item(curve.tone, curve.kind, curve.label, text === curve.label ? "" : text);
   }
 
-  /** Half the width of the band at x. */
-  private width(curve: Curve, x: number, write: (v: number) => string): string {
-    const band = curve.series.band;
-    if (band === null || !curve.series.sorted) return "";
-    const i = nearest(band.x, x);
-    return i < 0 ? "" : ` \u00b1 ${write((band.upper[i] - band.lower[i]) / 2)}`;
+  /** Half the width of the band at sample i itself: the drawn band of a decimated curve spans many samples. */
+  private width(curve: Curve, i: number, scales: Scales): string {
+    const { band, halfWidth, x } = curve.series;
+    let width = halfWidth?.[i] ?? NaN;
+    if (halfWidth === null && band !== null) {
+      const j = nearest(band.x, x[i]);
+      if (j >= 0) width = (band.upper[j] - band.lower[j]) / 2;
+    }
+    if (!Number.isFinite(width)) return "";
+    // A sigma far below what is seen of the axis is no zero.
+    const text = this.stored.y.scale === "log" ? width.toPrecision(3) : reading(width, Math.min(scales.y.max - scales.y.min, 100 * width));
+    return ` \u00b1 ${text}`;
   }
 
   private item(toneName: string, kind: string, label: string, value: string): void {
