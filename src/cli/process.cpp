@@ -419,8 +419,13 @@ void leave_time_to_the_filter(const RunConfig& config, Recordings& recordings, s
   const bool left = config.setup.unstated.time_offset;
   if (left && std::abs(seen) >= kNothing) setup.unstated.time_offset_seen_s = seen;
   if (!left && std::abs(seen - config.setup.time_offset_s) > kAgrees) return;
-  std::erase_if(recordings.inspection_events,
-                [](const record::Event& event) { return event.kind == "time_shift" || event.kind == "leap_second_shift"; });
+  std::erase_if(recordings.inspection_events, [&](const record::Event& event) {
+    if (event.kind != "time_shift" && event.kind != "leap_second_shift") return false;
+    std::ranges::replace(
+        recordings.inspection, event.text,
+        fmt::format("Times: turns match best at a shift of {:+.2f} s, which the filter confirms or not.", seen));
+    return true;
+  });
 }
 
 // Nothing sensible follows where gravity points the wrong way at rest.

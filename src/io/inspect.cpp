@@ -238,8 +238,8 @@ void check_time(const TimeMatch& match, Inspection& result) {
   const double slope = match.slope;
   if (slope < 0.0)
     warn(result, "gyro_sign",
-         fmt::format("The gyro about the vertical turns against the course (slope {:.2f}): a sign, or left-handed "
-                     "axes.",
+         fmt::format("The gyro about the vertical turns against the course (slope {:.2f}): a sign, left-handed "
+                     "axes, or latitude and longitude (north and east) exchanged.",
                      slope));
   else if (slope < 0.1 || slope > 10.0)
     warn(result, "gyro_unit",
