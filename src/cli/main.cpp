@@ -41,6 +41,7 @@ void add_calibrate(CLI::App& app, std::filesystem::path& input, CommonOptions& c
                   "calibration.yaml:\n{}\n\nstudy.yaml, the estimators on simulated records of known processes:\n{}",
                   coast::cli::calibration_example("  "), coast::cli::estimator_study_example("  ")));
   calibrate->callback([&input, &common] {
+    if (input.extension() == ".yaml") coast::cli::require_kind(input, "calibrate");
     if (coast::cli::is_estimator_study(input))
       coast::cli::estimator_study(input, common);
     else
@@ -57,6 +58,7 @@ void add_synth(CLI::App& app, std::filesystem::path& input, CommonOptions& commo
       "truth:\n{}",
       coast::cli::array_example("  "), coast::cli::array_study_example("  ")));
   synth->callback([&input, &common] {
+    coast::cli::require_kind(input, "synth");
     if (coast::cli::is_array_study(input))
       coast::cli::array_study(input, common);
     else
@@ -68,7 +70,10 @@ void add_ppk(CLI::App& app, std::filesystem::path& input, CommonOptions& common)
   auto* ppk = subcommand(app, "ppk", "RINEX of rover and base -> fixed carrier-phase positions", "", common);
   ppk->add_option("input", input, "run.yaml with gnss: {ppk: ..}, or ppk.yaml")->required();
   ppk->footer(fmt::format("Example:\n  coast ppk ppk.yaml --out positions\n\nppk.yaml:\n{}", coast::cli::ppk_example("  ")));
-  ppk->callback([&input, &common] { coast::cli::ppk(input, common); });
+  ppk->callback([&input, &common] {
+    coast::cli::require_kind(input, "ppk");
+    coast::cli::ppk(input, common);
+  });
 }
 
 void add_compare(CLI::App& app, std::filesystem::path& first, std::filesystem::path& second, std::vector<double>& lever_arm,
@@ -93,7 +98,7 @@ void add_diagnose(CLI::App& app, std::filesystem::path& input, coast::cli::Diagn
   diagnose->add_option("--simulation", choice.simulation,
                        "your own simulation in place of the twins: a scenario, or the run.yaml of a simulated recording");
   diagnose->callback([&] {
-    coast::cli::require_schema(input, "coast.run/1");
+    coast::cli::require_kind(input, "process");
     coast::cli::diagnose(input, choice, common);
   });
 }
@@ -127,8 +132,20 @@ int run(int argc, char** argv) {
       subcommand(app, "process", "IMU + GNSS -> forward filter -> smoother -> trajectory, summary.json, report.html",
                  "coast process run.yaml --out results", common);
   process->add_option("run", input, "run.yaml")->required();
+  process->footer(
+      "Example:\n  coast process run.yaml --out results\n\nThe smallest run.yaml (all keys: docs/reference/run.md):\n"
+      "  imu:\n"
+      "    file: imu.csv\n"
+      "    gps_week: 2374                        # where times are seconds of week\n"
+      "    columns: {time: 1, gyro: [2, 3, 4], accel: [5, 6, 7]}\n"
+      "    units: {gyro: rad/s, accel: m/s^2}\n"
+      "    axes: [x, y, z]                       # the sensor's axes that point forward, right, down\n"
+      "    error_model: error_model.yaml         # of configs/imu, or coast calibrate\n"
+      "    lever_arm_m: [0.3, -0.2, -1.1]        # IMU to antenna: forward, right, down\n"
+      "  gnss:\n"
+      "    file: gnss.pos");
   process->callback([&] {
-    coast::cli::require_schema(input, "coast.run/1");
+    coast::cli::require_kind(input, "process");
     coast::cli::process(input, common);
   });
 
@@ -139,13 +156,19 @@ int run(int argc, char** argv) {
                               "coast simulate configs/scenarios/car_roundabout.yaml --out recording --seed 7", common);
   simulate->add_option("scenario", input, "scenario.yaml")->required();
   simulate->add_option("--seed", seed, "seed of the simulated noise (default: the scenario's)");
-  simulate->callback([&] { coast::cli::simulate(input, seed, common); });
+  simulate->callback([&] {
+    coast::cli::require_kind(input, "simulate");
+    coast::cli::simulate(input, seed, common);
+  });
 
   auto* outage =
       subcommand(app, "outage", "outages x error models -> drift tables and figures, of a recording or of simulated seeds",
                  "coast outage configs/studies/straight_130s.yaml --out study", common);
   outage->add_option("study", input, "study.yaml: run and sweep, or scenario and seeds")->required();
-  outage->callback([&] { coast::cli::outage(input, common); });
+  outage->callback([&] {
+    coast::cli::require_kind(input, "outage");
+    coast::cli::outage(input, common);
+  });
 
   add_calibrate(app, input, common);
 

@@ -2,9 +2,10 @@
 
 #include <fmt/format.h>
 
-#include <array>
+#include <algorithm>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "coast/io/yaml.hpp"
 #include "coast/record/error.hpp"
@@ -16,33 +17,48 @@ namespace {
 struct ConfigurationFile {
   std::string_view schema;
   std::string_view is;
-  std::string_view command;  ///< that reads it; empty: none
+  std::string_view command;            ///< that reads it; empty: none
+  std::vector<std::string_view> keys;  ///< that it has at its root and no other kind has, where it names no schema
 };
 
-constexpr std::array kFiles = {
-    ConfigurationFile{"coast.run/", "a run", "process"},
-    ConfigurationFile{"coast.scenario/", "a scenario", "simulate"},
-    ConfigurationFile{"coast.study/", "a study of outages", "outage"},
-    ConfigurationFile{"coast.calibration_run/", "a calibration", "calibrate"},
-    ConfigurationFile{"coast.estimator_study/", "a study of estimators", "calibrate"},
-    ConfigurationFile{"coast.array/", "an array of IMUs", "synth"},
-    ConfigurationFile{"coast.array_study/", "a study of arrays", "synth"},
-    ConfigurationFile{"coast.ppk/", "a solution of RINEX", "ppk"},
-    ConfigurationFile{"coast.imu_error_model/", "an error model", ""},
-};
+const std::vector<ConfigurationFile>& kinds() {
+  static const std::vector<ConfigurationFile> all{
+      {"coast.run/", "a run", "process", {"imu", "gnss"}},
+      {"coast.scenario/", "a scenario", "simulate", {"trajectory"}},
+      {"coast.study/", "a study of outages", "outage", {"sweep"}},
+      {"coast.calibration_run/", "a calibration", "calibrate", {"records"}},
+      {"coast.estimator_study/", "a study of estimators", "calibrate", {}},
+      {"coast.array/", "an array of IMUs", "synth", {"imus"}},
+      {"coast.array_study/", "a study of arrays", "synth", {}},
+      {"coast.ppk/", "a solution of RINEX", "ppk", {"rover", "base"}},
+      {"coast.imu_error_model/", "an error model", "", {"gyro", "accel"}},
+  };
+  return all;
+}
+
+const ConfigurationFile* kind_of(const config::Node& root) {
+  const auto schema = root.find("schema");
+  const bool named = schema && schema->is_scalar();
+  const auto known = std::ranges::find_if(kinds(), [&](const ConfigurationFile& kind) {
+    if (named) return schema->text().starts_with(kind.schema);
+    return !kind.keys.empty() &&
+           std::ranges::all_of(kind.keys, [&](std::string_view key) { return root.find(key).has_value(); });
+  });
+  return known == kinds().end() ? nullptr : &*known;
+}
 
 }  // namespace
 
-void require_schema(const std::filesystem::path& file, std::string_view expected) {
-  const auto schema = io::load_yaml(file).find("schema");
-  if (!schema || !schema->is_scalar()) return;  // whoever reads the file judges it
-  const std::string found = schema->text();
-  for (const ConfigurationFile& known : kFiles)
-    if (found.starts_with(known.schema) && !expected.starts_with(known.schema))
-      throw schema->error(fmt::format("this file is {} (`schema: {}`)", known.is, found), fmt::format("`schema: {}`", expected),
-                          known.command.empty()
-                              ? "It is named in a run.yaml, as imu.error_model."
-                              : fmt::format("The subcommand for it is: coast {} {}", known.command, file.string()));
+void require_kind(const std::filesystem::path& file, std::string_view command) {
+  const config::Node root = io::load_yaml(file);
+  if (!root.is_map()) return;  // whoever reads the file judges it
+  const ConfigurationFile* kind = kind_of(root);
+  const bool positions_of_a_run = kind != nullptr && command == "ppk" && kind->command == "process";
+  if (kind == nullptr || kind->command == command || positions_of_a_run) return;
+  throw root.error(fmt::format("this file is {} (`schema: {}1`)", kind->is, kind->schema),
+                   fmt::format("a file for coast {}", command),
+                   kind->command.empty() ? "It is named in a run.yaml, as imu.error_model."
+                                         : fmt::format("The subcommand for it is: coast {} {}", kind->command, file.string()));
 }
 
 }  // namespace coast::cli

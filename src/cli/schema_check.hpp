@@ -6,8 +6,8 @@
 
 namespace coast::cli {
 
-/// @param expected  e.g. "coast.run/1"
-/// @throws InputError  the file names another known schema; a file without one is let through
-void require_schema(const std::filesystem::path& file, std::string_view expected);
+/// @param command  of coast, that is to read the file
+/// @throws InputError  the file is of another kind, by the schema that it names or by its keys; what is not known is let through
+void require_kind(const std::filesystem::path& file, std::string_view command);
 
 }  // namespace coast::cli

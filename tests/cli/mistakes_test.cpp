@@ -64,7 +64,7 @@ TEST_P(Mistakes, AreAnsweredAsTheirFileSays) {
   write(place / "run.yaml", kShortestRun);
   if (const auto edit = file.find("edit")) {
     write(folder.path() / "edit.sh", edit->text());
-    ASSERT_EQ(shell(place, fmt::format("sh -e '{}'", (folder.path() / "edit.sh").string())), 0);
+    ASSERT_EQ(shell(place, fmt::format("COAST='{}' sh -e '{}'", COAST_PROGRAM, (folder.path() / "edit.sh").string())), 0);
   }
   const int status = shell(place, fmt::format("'{}' {} >../told 2>&1", COAST_PROGRAM, file.at("command").text()));
   const std::string told = text_of(folder.path() / "told");
