@@ -30,6 +30,51 @@ CLI::App* subcommand(CLI::App& app, const char* name, const char* help, const ch
   return command;
 }
 
+void add_process(CLI::App& app, std::filesystem::path& input, CommonOptions& common) {
+  auto* process =
+      subcommand(app, "process", "IMU + GNSS -> forward filter -> smoother -> trajectory, summary.json, report.html",
+                 "coast process run.yaml --out results", common);
+  process->add_option("run", input, "run.yaml")->required();
+  process->footer(
+      "Example:\n  coast process run.yaml --out results\n\nThe smallest run.yaml (all keys: docs/reference/run.md):\n"
+      "  imu:\n"
+      "    file: imu.csv\n"
+      "    gps_week: 2374                        # where times are seconds of week\n"
+      "    columns: {time: 1, gyro: [2, 3, 4], accel: [5, 6, 7]}\n"
+      "    units: {gyro: rad/s, accel: m/s^2}\n"
+      "    axes: [x, y, z]                       # the sensor's axes that point forward, right, down\n"
+      "    error_model: error_model.yaml         # of configs/imu, or coast calibrate\n"
+      "    lever_arm_m: [0.3, -0.2, -1.1]        # IMU to antenna: forward, right, down\n"
+      "  gnss:\n"
+      "    file: gnss.pos");
+  process->callback([&input, &common] {
+    coast::cli::require_kind(input, "process");
+    coast::cli::process(input, common);
+  });
+}
+
+void add_simulate(CLI::App& app, std::filesystem::path& input, std::optional<std::uint64_t>& seed, CommonOptions& common) {
+  auto* simulate = subcommand(app, "simulate", "trajectory + sensors -> a recording with its truth",
+                              "coast simulate configs/scenarios/car_roundabout.yaml --out recording --seed 7", common);
+  simulate->add_option("scenario", input, "scenario.yaml")->required();
+  simulate->add_option("--seed", seed, "seed of the simulated noise (default: the scenario's)");
+  simulate->callback([&input, &seed, &common] {
+    coast::cli::require_kind(input, "simulate");
+    coast::cli::simulate(input, seed, common);
+  });
+}
+
+void add_outage(CLI::App& app, std::filesystem::path& input, CommonOptions& common) {
+  auto* outage =
+      subcommand(app, "outage", "outages x error models -> drift tables and figures, of a recording or of simulated seeds",
+                 "coast outage configs/studies/straight_130s.yaml --out study", common);
+  outage->add_option("study", input, "study.yaml: run and sweep, or scenario and seeds")->required();
+  outage->callback([&input, &common] {
+    coast::cli::require_kind(input, "outage");
+    coast::cli::outage(input, common);
+  });
+}
+
 void add_calibrate(CLI::App& app, std::filesystem::path& input, CommonOptions& common) {
   auto* calibrate =
       subcommand(app, "calibrate", "static records -> IMU error model with intervals, and what they cannot tell", "", common);
@@ -128,47 +173,14 @@ int run(int argc, char** argv) {
   std::optional<std::uint64_t> seed;
   std::vector<double> lever_arm{0.0, 0.0, 0.0};
 
-  auto* process =
-      subcommand(app, "process", "IMU + GNSS -> forward filter -> smoother -> trajectory, summary.json, report.html",
-                 "coast process run.yaml --out results", common);
-  process->add_option("run", input, "run.yaml")->required();
-  process->footer(
-      "Example:\n  coast process run.yaml --out results\n\nThe smallest run.yaml (all keys: docs/reference/run.md):\n"
-      "  imu:\n"
-      "    file: imu.csv\n"
-      "    gps_week: 2374                        # where times are seconds of week\n"
-      "    columns: {time: 1, gyro: [2, 3, 4], accel: [5, 6, 7]}\n"
-      "    units: {gyro: rad/s, accel: m/s^2}\n"
-      "    axes: [x, y, z]                       # the sensor's axes that point forward, right, down\n"
-      "    error_model: error_model.yaml         # of configs/imu, or coast calibrate\n"
-      "    lever_arm_m: [0.3, -0.2, -1.1]        # IMU to antenna: forward, right, down\n"
-      "  gnss:\n"
-      "    file: gnss.pos");
-  process->callback([&] {
-    coast::cli::require_kind(input, "process");
-    coast::cli::process(input, common);
-  });
+  add_process(app, input, common);
 
   coast::cli::DiagnoseOptions diagnose_choice;
   add_diagnose(app, input, diagnose_choice, common);
 
-  auto* simulate = subcommand(app, "simulate", "trajectory + sensors -> a recording with its truth",
-                              "coast simulate configs/scenarios/car_roundabout.yaml --out recording --seed 7", common);
-  simulate->add_option("scenario", input, "scenario.yaml")->required();
-  simulate->add_option("--seed", seed, "seed of the simulated noise (default: the scenario's)");
-  simulate->callback([&] {
-    coast::cli::require_kind(input, "simulate");
-    coast::cli::simulate(input, seed, common);
-  });
+  add_simulate(app, input, seed, common);
 
-  auto* outage =
-      subcommand(app, "outage", "outages x error models -> drift tables and figures, of a recording or of simulated seeds",
-                 "coast outage configs/studies/straight_130s.yaml --out study", common);
-  outage->add_option("study", input, "study.yaml: run and sweep, or scenario and seeds")->required();
-  outage->callback([&] {
-    coast::cli::require_kind(input, "outage");
-    coast::cli::outage(input, common);
-  });
+  add_outage(app, input, common);
 
   add_calibrate(app, input, common);
 

@@ -56,7 +56,8 @@ void require_kind(const std::filesystem::path& file, std::string_view command) {
   const bool positions_of_a_run = kind != nullptr && command == "ppk" && kind->command == "process";
   if (kind == nullptr || kind->command == command || positions_of_a_run) return;
   throw root.error(fmt::format("this file is {} (`schema: {}1`)", kind->is, kind->schema),
-                   fmt::format("a file for coast {}", command),
+                   fmt::format("a file for coast {} (`schema: {}1`)", command,
+                               std::ranges::find(kinds(), command, &ConfigurationFile::command)->schema),
                    kind->command.empty() ? "It is named in a run.yaml, as imu.error_model."
                                          : fmt::format("The subcommand for it is: coast {} {}", kind->command, file.string()));
 }
