@@ -62,7 +62,7 @@ class ForwardPass {
 
   SampleCursor cursor_;
   std::size_t next_fix_ = 0;
-  std::size_t next_stop_ = 0;   ///< of options_.knots_at
+  std::size_t next_stop_ = 0;  ///< of options_.knots_at
   std::size_t next_restart_ = 0;
   std::size_t next_block_ = 0;  ///< of the members
   struct MemberCount {
