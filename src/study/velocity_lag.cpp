@@ -10,7 +10,7 @@ namespace coast::study {
 namespace {
 
 constexpr double kLongestStep = 1.1;  // s: between fixes farther apart velocities are not linear
-constexpr double kLargest = 0.6;      // s
+constexpr double kLargestLag = 0.6;   // s
 constexpr double kGrid = 0.01;        // s
 
 // Velocity at t, between the fixes around it; the search begins at `near`.
@@ -64,7 +64,7 @@ std::optional<double> velocity_lag(const record::GnssRecording& gnss) {
   };
   double best = 0.0, least = residual(0.0);
   const double at_none = least;
-  for (double lag = -kLargest; lag <= kLargest; lag += kGrid)
+  for (double lag = -kLargestLag; lag <= kLargestLag; lag += kGrid)
     if (const double r = residual(lag); r < least) {
       least = r;
       best = lag;
