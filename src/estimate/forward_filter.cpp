@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <stdexcept>
 
@@ -51,6 +52,11 @@ ForwardFilter::ForwardFilter(const Mission& mission, const noise::ImuErrorModel&
     : mission_(mission), options_(options), layout_(model, mission.C_s_b, with_slots(options.auxiliary, mission.carrier)) {
   if (!(options.knot_interval_s > 0.0)) throw std::invalid_argument("FilterOptions::knot_interval_s must be above zero");
   check_members(mission.imu.members, layout_);
+  // A start that stands in an outage has seen what the outage withholds.
+  std::erase_if(mission_.restarts, [&](const Restart& restart) {
+    const geo::GpsTime tagged = restart.nav.t + mission.time_offset_s;
+    return std::ranges::any_of(options.withheld, [&](const Withheld& span) { return span.contains(tagged); });
+  });
   // The closed form that carries driving noise into the navigation states within an interval wants it short.
   knot_interval_ = std::min(options.knot_interval_s, std::max(0.2 * layout_.shortest_time(), 2.0 / mission.imu.rate_hz));
 }

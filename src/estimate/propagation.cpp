@@ -19,7 +19,7 @@ constexpr double kManoeuvre = 0.5;   // s, correlation time
 constexpr double kGapTiltMax = 0.25;      // rad
 constexpr double kGapHeadingMax = 1.0;    // rad
 constexpr double kGapVelocityMax = 30.0;  // m/s
-constexpr double kLongGap = 5.0;          // s
+constexpr double kCoastingGap = 5.0;      // s
 constexpr double kLostPosition = 100.0;   // m
 
 // Of the integral over t of an exponentially correlated error of unit variance, s^2: t^2 of a short one, 2 tau t of a long one,
@@ -143,7 +143,7 @@ const Restart* restart_at(const Mission& mission, geo::GpsTime t) {
 }
 
 bool is_long_gap(const record::ImuRecording& imu, double span) {
-  return span - 1.0 / imu.rate_hz > kLongGap;
+  return span - 1.0 / imu.rate_hz > kCoastingGap;
 }
 
 double missing_share(const record::ImuRecording& imu, double span) {

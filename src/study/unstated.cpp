@@ -34,8 +34,9 @@ void PreparedMission::choose_time_offset(const Progress& progress) {
   if (!setup_.unstated.time_offset || setup_.start || setup_.unstated.time_offset_seen_s == 0.0) return;
   constexpr double kCoarse = 0.4;  // s: the state of the offset finds what is nearer
   const estimate::FilterOptions stated = setup_.filter;
-  setup_.filter.gate_probability = 0.0;
   const auto log_likelihood_at = [&](double offset) {
+    setup_.filter = stated;  // what one candidate assumed is not the next one's
+    setup_.filter.gate_probability = 0.0;
     setup_.time_offset_s = mission_->time_offset_s = offset;
     try {
       align(progress);
@@ -128,7 +129,7 @@ void PreparedMission::test_noise() {
   gain_errors_left_out_ = true;
 }
 
-// EM on the drift of each axis, about the noise that was fitted; a few steps come within a tenth of its maximum.
+// EM on the drift of each axis, about the noise that was fitted.
 void PreparedMission::adapt_drift() {
   constexpr double kContradicted = 2.0;  // times the stated sigma
   constexpr double kLargest = 100.0;     // more is no drift of a bias but another mistake

@@ -156,6 +156,36 @@ TEST_F(ForwardFilterTest, BridgesAGapOfTheImuAndSaysThatItIsUncertain) {
   }
 }
 
+TEST_F(ForwardFilterTest, ARestartForgetsTheAttitudeBeforeItUnlessItSawWhatIsWithheld) {
+  record();
+  const geo::GpsTime at = test::mission_start() + 20.13;
+  Mission mission = recording_.mission();
+  mission.restarts = {{recording_.truth(at), Eigen::Vector3d::Ones(), Eigen::Vector3d::Ones(), Eigen::Vector3d::Constant(0.1)}};
+  for (const bool withheld : {false, true}) {
+    if (withheld) options_.withheld.push_back({at - 1.0, at + 1.0});
+    const ForwardFilter filter(mission, model_, options_);
+    std::mt19937_64 random(1);
+    KnotStore knots;
+    FilterOutputs outputs;
+    outputs.knots = &knots;
+    double sd = 0.0;
+    outputs.at_knots = [&](const FilterState& state) {
+      if (std::abs(state.nav.t - at) < 1e-5) sd = std::sqrt(state.P(kPsi, kPsi));
+    };
+    static_cast<void>(filter.run(test::drawn_start(filter, recording_.truth(test::mission_start()), {}, random), outputs));
+    if (withheld) {
+      EXPECT_EQ(sd, 0.0);  // it is no knot
+      continue;
+    }
+    EXPECT_NEAR(sd, 0.1, 1e-12);
+    std::size_t before = 0;
+    while (knots.time(before + 1) < at - 1e-5) ++before;
+    const Knot knot = knots.at(before);
+    EXPECT_TRUE(knot.Phi_n.middleRows<3>(kPsi).isZero(0.0));
+    EXPECT_FALSE(knot.Phi_n.middleRows<3>(kPos).isZero(0.0));
+  }
+}
+
 TEST_F(ForwardFilterTest, ResumesFromAKnotAsIfItHadNotStopped) {
   record();
   KnotStore knots;
