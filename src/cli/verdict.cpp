@@ -202,6 +202,12 @@ void add_assumed_heading(const ProcessResult& result, std::vector<Check>& checks
   if (assumed != nullptr) checks.push_back({"heading_assumed", 1.0, 0.0, {}, "the heading rests on an assumption"});
 }
 
+// The recording is followed, but one of the two is wrong: what was measured, or what else may look like it.
+void add_lever_arm(const ProcessResult& result, std::vector<Check>& checks) {
+  if (find(result.events, "lever_arm_contradicted") == nullptr) return;
+  checks.push_back({"lever_arm_contradicted", 1.0, 0.0, {}, "the recording contradicts the lever arm that is stated"});
+}
+
 // Mistakes in the order in which each hides the ones behind it.
 std::string likely_cause(const ProcessResult& result) {
   for (const char* kind : {"specific_force_size", "gravity_sign", "gravity_axis", "gyro_sign", "gyro_unit", "leap_second_shift",
@@ -219,6 +225,7 @@ Judgement judge(const ProcessResult& result, std::vector<Check> motion) {
   add_noise_fit(result, judgement.checks);
   add_jumps(result, judgement.checks);
   add_assumed_heading(result, judgement.checks);
+  add_lever_arm(result, judgement.checks);
   if (judgement.standing() != Standing::kGood) judgement.likely_cause = likely_cause(result);
   return judgement;
 }

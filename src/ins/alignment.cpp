@@ -18,19 +18,21 @@
 namespace coast::ins {
 namespace {
 
-constexpr double kShortGap = 0.1;                       // s: samples missing for less turn a body by little
-constexpr double kGapRateSd = 0.3;                      // rad/s, of what turns it meanwhile
-constexpr double kGoodHeading = 1.0 * geo::kDegree;     // the search for a better window ends
-constexpr double kFairHeading = 5.0 * geo::kDegree;     // taken where `kPatience` brought none better
-constexpr double kPatience = 60.0;                      // s
-constexpr double kGyrocompass = 2.0 * geo::kDegree;     // better than this and no motion is asked
-constexpr double kUsableHeading = 15.0 * geo::kDegree;  // a filter linear in the attitude converges from here
-constexpr double kClearLead = 6.0;                      // -2 log likelihood: another heading is 20 times less likely
-constexpr double kSearch = 600.0, kSearchStep = 20.0;   // s
-constexpr double kStandstillVelocitySd = 0.02;          // m/s; an engine shakes, a rotor lifts
-constexpr double kForceError = 0.02;                    // m/s^2, of attitude and accelerometer bias together
-constexpr double kMinForceBias = 1e-3;                  // m/s^2; no accelerometer is better, nor is gravity known better
-constexpr double kLeastBiasSd = 1e-5;                   // rad/s; what stands on wheels or legs may still turn by as much
+constexpr double kShortGap = 0.1;                                // s: samples missing for less turn a body by little
+constexpr double kGapRateSd = 0.3;                               // rad/s, of what turns it meanwhile
+constexpr double kGoodHeading = 1.0 * geo::kDegree;              // the search for a better window ends
+constexpr double kFairHeading = 5.0 * geo::kDegree;              // taken where `kPatience` brought none better
+constexpr double kPatience = 60.0;                               // s
+constexpr double kGyrocompass = 2.0 * geo::kDegree;              // better than this and no motion is asked
+constexpr double kUsableHeading = 15.0 * geo::kDegree;           // a filter linear in the attitude converges from here
+constexpr double kClearLead = 6.0;                               // -2 log likelihood: another heading is 20 times less likely
+constexpr double kSearch = 600.0, kSearchStep = 20.0;            // s
+constexpr double kShortestWindow = 10.0, kLongestWindow = 80.0;  // s
+constexpr double kIntervals = 12.0;                              // of fixes, at least, in the longest window
+constexpr double kStandstillVelocitySd = 0.02;                   // m/s; an engine shakes, a rotor lifts
+constexpr double kForceError = 0.02;                             // m/s^2, of attitude and accelerometer bias together
+constexpr double kMinForceBias = 1e-3;  // m/s^2; no accelerometer is better, nor is gravity known better
+constexpr double kLeastBiasSd = 1e-5;   // rad/s; what stands on wheels or legs may still turn by as much
 
 const char* const kGiveStart =
     "Give the state under `start:` (time_s, position_deg_m, velocity_mps, attitude_deg, sd), or start the recording earlier or "
@@ -162,10 +164,11 @@ std::optional<Heading> heading_from_motion(const AlignmentInput& input, const Sp
   const auto& samples = input.imu.samples;
   const geo::GpsTime t_at = samples[at].t - samples[at].dt;
   const Eigen::Matrix3d C_e_n = geo::C_n_e(geo::geodetic_from_ecef(input.gnss.fixes.front().r_ea_e)).transpose();
+  const double longest = std::max(kLongestWindow, kIntervals * typical_interval(input.gnss));
   std::optional<Heading> best;
   for (double from = 0.0; from < kSearch && t_at + from < span.end; from += kSearchStep) {
     Eigen::Vector3d nearby = gyro_bias;  // a short window survives a poor bias; what it finds carries the longer ones
-    for (double length : {10.0, 20.0, 40.0, 80.0}) {
+    for (double length = kShortestWindow; length <= longest; length *= 2.0) {
       const std::size_t first = sample_after(input.imu, t_at + from + 1e-6);
       const std::size_t end = sample_after(input.imu, std::min(span.end, t_at + from + length));
       if (end <= first + 1 || samples[end - 1].t - samples[first].t < 0.5 * length) break;
@@ -208,11 +211,34 @@ void require_usable(const std::optional<Heading>& heading, const Span& span, boo
                   std::min(kSearch, span.end - span.t), kUsableHeading / geo::kDegree, found, hint, kGiveStart));
 }
 
+// Where it stands: the mean of the fixes while it does, whose errors are alike. Without one it is where the first fix behind
+// is, but for what it has moved by then, at the speed of the fixes that follow.
+TrackPoint standing_antenna(const AlignmentInput& input, const Span& span, const StaticPeriod& period) {
+  constexpr double kLeastSpeed = 2.0;  // m/s
+  TrackPoint antenna{Eigen::Vector3d::Zero(), Eigen::Vector3d::Zero(), 0.0, kStandstillVelocitySd};
+  const std::vector<record::GnssFix>& fixes = input.gnss.fixes;
+  const geo::GpsTime end = input.imu.samples[period.last].t;
+  double count = 0.0;
+  for (const record::GnssFix& fix : fixes) {
+    if (fix.t < span.t || fix.t > end) continue;
+    count += 1.0;
+    antenna.r_ea_e += (fix.r_ea_e - antenna.r_ea_e) / count;
+    antenna.sd_position += (axis_sd(fix.position_cov_n) - antenna.sd_position) / count;
+  }
+  const auto behind = std::ranges::upper_bound(fixes, end, {}, &record::GnssFix::t);
+  if (count > 0.0 || fixes.end() - behind < 2) return count > 0.0 ? antenna : track_point(input.gnss, span.t);
+  const record::GnssFix &first = *behind, &second = *(behind + 1);
+  const double speed = std::max(kLeastSpeed, (second.r_ea_e - first.r_ea_e).norm() / (second.t - first.t));
+  antenna.r_ea_e = first.r_ea_e;
+  antenna.sd_position = axis_sd(first.position_cov_n) + speed * (first.t - end);
+  return antenna;
+}
+
 InitialState from_standstill(const AlignmentInput& input, const Span& span, const StaticPeriod& period, bool vehicle_forward) {
   const auto& samples = input.imu.samples;
   const Means means = mean_over(input.imu, period.first, period.last);
   const Eigen::Matrix3d C_level = levelled(means.force);
-  const TrackPoint antenna = track_point(input.gnss, span.t);
+  const TrackPoint antenna = standing_antenna(input, span, period);
   const geo::Geodetic p = geo::geodetic_from_ecef(antenna.r_ea_e);
   const Eigen::Matrix3d C_n_e = geo::C_n_e(p);
   const Eigen::Vector3d omega_ie_n = C_n_e.transpose() * Eigen::Vector3d(0.0, 0.0, geo::kEarthRate);

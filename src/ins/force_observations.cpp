@@ -99,7 +99,7 @@ std::vector<ForceObservation> observe_specific_force(const record::GnssRecording
   const double span = std::clamp(std::sqrt(std::sqrt(6.0) * sd / kWantedNoise), 1.0, 10.0);
   const double span_velocity = std::clamp(std::sqrt(2.0) * sd_velocity / kWantedNoise, 1.0, 10.0);
   const bool hat = std::sqrt(6.0) * sd / (span * span) <= std::sqrt(2.0) * sd_velocity / span_velocity;
-  const double step = hat ? span : span_velocity;
+  const double step = std::max(hat ? span : span_velocity, typical_interval(gnss));
   for (std::size_t a = 0; a < fixes.t.size();) {
     const std::size_t k = index_at(fixes, a + 1, fixes.t[a] + step);
     const std::size_t b = hat ? index_at(fixes, k + 1, fixes.t[a] + 2.0 * step) : k;

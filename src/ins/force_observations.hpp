@@ -20,8 +20,8 @@ struct ForceObservation {
 };
 
 /// Hat means from second differences of position, or box means from differences of velocity, whichever are less noisy, over
-/// spans of 1 to 10 s: as long as it takes for 0.05 m/s^2. Exact for any motion within the span. In time order; none across
-/// gaps.
+/// spans of 1 to 10 s, as long as it takes for 0.05 m/s^2, or from fix to fix where these are farther apart. Exact for any
+/// motion within the span. In time order; none across gaps.
 /// @param reference  origin of the observations' times; fixes from there to `end` are used
 [[nodiscard]] std::vector<ForceObservation> observe_specific_force(const record::GnssRecording& gnss, geo::GpsTime reference,
                                                                    geo::GpsTime end);

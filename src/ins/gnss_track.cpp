@@ -3,6 +3,7 @@
 #include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
+#include <vector>
 
 #include "coast/geo/earth.hpp"
 
@@ -35,6 +36,15 @@ PolynomialFit fit_polynomial(const Eigen::VectorXd& times, const Eigen::MatrixX3
 }
 
 }  // namespace
+
+double typical_interval(const record::GnssRecording& gnss) {
+  std::vector<double> intervals;
+  for (std::size_t i = 1; i < gnss.fixes.size(); ++i) intervals.push_back(gnss.fixes[i].t - gnss.fixes[i - 1].t);
+  if (intervals.empty()) return 0.0;
+  const auto middle = intervals.begin() + static_cast<std::ptrdiff_t>(intervals.size() / 2);
+  std::nth_element(intervals.begin(), middle, intervals.end());
+  return *middle;
+}
 
 double axis_sd(const Eigen::Matrix3d& covariance) {
   return std::sqrt(covariance.trace() / 3.0);

@@ -20,6 +20,9 @@ struct TrackPoint {
 /// a line. @pre at least three fixes
 [[nodiscard]] TrackPoint track_point(const record::GnssRecording& gnss, geo::GpsTime t);
 
+/// Median time between neighbouring fixes, s; zero where there are fewer than two.
+[[nodiscard]] double typical_interval(const record::GnssRecording& gnss);
+
 /// sqrt(trace / 3): the standard deviation of one axis.
 [[nodiscard]] double axis_sd(const Eigen::Matrix3d& covariance);
 

@@ -11,7 +11,7 @@
 namespace coast::ins {
 namespace {
 
-constexpr double kShortest = 1.0, kLongest = 12.0;  // s
+constexpr double kShortest = 1.0, kLongest = 12.0;  // s; longer where the second fix comes later
 constexpr std::size_t kFixes = 3;                   // at least, where they come within kLongest
 constexpr double kVelocitySpan = 0.02;              // s, to both sides
 
@@ -49,6 +49,12 @@ PredictedPath predict(const AlignmentInput& input, const StartAttitude& attitude
   return path;
 }
 
+// Two fixes tell a velocity.
+geo::GpsTime second_fix(const record::GnssRecording& gnss, geo::GpsTime start) {
+  const auto first = std::ranges::lower_bound(gnss.fixes, start, {}, &record::GnssFix::t);
+  return gnss.fixes.end() - first < 2 ? start : (first + 1)->t;
+}
+
 // Residual = offset + slope t per axis, all axes with the same weights.
 struct Line {
   Eigen::Matrix2d normal = Eigen::Matrix2d::Zero();
@@ -67,7 +73,7 @@ TrackPoint start_point(const AlignmentInput& input, const StartAttitude& attitud
   const TrackPoint rough = track_point(input.gnss, start);
   record::NavState guess{start, rough.r_ea_e - attitude.C_b_e * input.lever_arm_b, rough.v_ea_e,
                          Eigen::Quaterniond(attitude.C_b_e)};
-  const PredictedPath path = predict(input, attitude, guess, start + kLongest);
+  const PredictedPath path = predict(input, attitude, guess, std::max(start + kLongest, second_fix(input.gnss, start)));
 
   const record::GnssFix& near = input.gnss.fixes.front();
   const double sd = axis_sd(near.position_cov_n);

@@ -91,18 +91,13 @@ PreparedMission::PreparedMission(record::ImuRecording imu, record::GnssRecording
   }
   if (!setup_.start) run_back_to_first_epoch();
   restart_behind_gaps();
-  const double coarse_offset = mission_->time_offset_s;
-  const double stated_offset_sd = setup_.filter.auxiliary.time_offset_sd_s;
-  test_time_offset();
-  if (setup_.unstated.time_offset && setup_.filter.auxiliary.time_offset_sd_s > 0.0) {
+  tested_ = antenna_to_test();
+  test_antenna();
+  if (antenna_is_estimated()) {
     refine_start(progress);
     refine_antenna(progress);
   }
   test_noise();
-  if (noise_ratio_ && setup_.unstated.time_offset) {  // found beside the wrong noise, it is to be found again
-    mission_->time_offset_s = coarse_offset;
-    setup_.filter.auxiliary.time_offset_sd_s = stated_offset_sd;
-  }
   if (setup_.noise_fit) {
     fit_and_adopt(progress);
   } else {
@@ -118,6 +113,7 @@ PreparedMission::PreparedMission(record::ImuRecording imu, record::GnssRecording
 // from a start that the first has made good.
 void PreparedMission::fit_and_adopt(const Progress& progress) {
   const noise::ImuErrorModel stated_model = setup_.model;
+  free_antenna();  // what is wrong with it must not be taken for noise
   estimate::FilterOptions stated = setup_.filter;
   setup_.filter.gate_probability = 0.0;
   refine_start(progress);
@@ -138,35 +134,11 @@ void PreparedMission::fit_and_adopt(const Progress& progress) {
     from.correlated_gnss.vertical_m = std::max(from.correlated_gnss.vertical_m, first.correlated_gnss.vertical_m);
     refine_start(progress);
     adapt_drift();
-    if (!last) {
-      test_time_offset();  // beside noise that is stated wrongly an offset means nothing
-      stated.auxiliary.time_offset_sd_s = setup_.filter.auxiliary.time_offset_sd_s;
-    }
     refine_antenna(progress);
-  }
-}
-
-// The offset enters as velocity times time, which holds for milliseconds, and whatever else compares with fixes wants them
-// where they belong: time offset and lever arm take what was found until nothing is.
-void PreparedMission::refine_antenna(const Progress& progress) {
-  constexpr int kRounds = 5;
-  constexpr double kSettledTime = 5e-4;  // s
-  constexpr double kSettledArm = 1e-3;   // m
-  for (int round = 0; round < kRounds; ++round) {
-    if (progress) progress("finding antenna and time offset", static_cast<double>(round) / kRounds);
-    const estimate::ForwardFilter filter(*mission_, setup_.model, setup_.filter);
-    const estimate::StateLayout& layout = filter.layout();
-    if (!layout.time_offset() && !layout.lever_arm()) return;
-    estimate::FilterState start = start_state(filter);  // the prior stays where the configuration put it
-    if (layout.time_offset()) start.x(*layout.time_offset()) = setup_.time_offset_s - mission_->time_offset_s;
-    if (layout.lever_arm()) start.x.segment<3>(*layout.lever_arm()) = setup_.lever_arm_b - mission_->lever_arm_b;
-    const Eigen::VectorXd x = filter.run(start, {}).last.x;
-    const double time = layout.time_offset() ? x(*layout.time_offset()) : 0.0;
-    const Eigen::Vector3d arm = layout.lever_arm() ? x.segment<3>(*layout.lever_arm()).eval() : Eigen::Vector3d::Zero();
-    if (std::abs(time) < kSettledTime && arm.norm() < kSettledArm) return;
-    mission_->time_offset_s += time;
-    mission_->lever_arm_b += arm;
-    refine_start(progress);
+    if (last) break;
+    test_antenna();  // beside noise that is stated wrongly an offset means nothing
+    stated.auxiliary.time_offset_sd_s = setup_.filter.auxiliary.time_offset_sd_s;
+    stated.auxiliary.lever_arm_sd_m = setup_.filter.auxiliary.lever_arm_sd_m;
   }
 }
 
@@ -255,7 +227,7 @@ estimate::FilterResult PreparedMission::first_minutes(estimate::FilterOptions op
     options.withheld.push_back({*setup_.refine_before, *setup_.refine_before + kFirstMinutes});  // the fix at the end too
   }
   const estimate::ForwardFilter filter(*mission_, setup_.model, options);
-  return filter.run_until(start_state(filter), end, outputs);
+  return filter.run_until(antenna_as_stated(start_state(filter), filter.layout()), end, outputs);
 }
 
 // Gauss-Newton on the start: the filter is linearised about a start that the data themselves have corrected. The uncertainty

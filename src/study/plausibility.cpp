@@ -19,6 +19,16 @@ std::optional<SensorError> largest_sensor_error(const estimate::StateLayout& lay
   return largest;
 }
 
+double nis_over_expected(const std::vector<estimate::InnovationRecord>& innovations) {
+  double nis = 0.0, dof = 0.0;
+  for (const estimate::InnovationRecord& r : innovations) {
+    if (!r.used || !(estimate::is_position(r.kind) || r.kind == estimate::UpdateKind::kGnssVelocity)) continue;
+    nis += r.nis;
+    dof += r.dof;
+  }
+  return dof > 0.0 ? nis / dof : 1.0;
+}
+
 namespace {
 
 constexpr std::size_t kAxes = 3;

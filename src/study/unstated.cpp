@@ -13,21 +13,6 @@
 
 namespace coast::study {
 
-namespace {
-
-// Of the used GNSS innovations; 1 where the noise is as stated.
-double nis_over_expected(const std::vector<estimate::InnovationRecord>& innovations) {
-  double nis = 0.0, dof = 0.0;
-  for (const estimate::InnovationRecord& r : innovations) {
-    if (!r.used || !(estimate::is_position(r.kind) || r.kind == estimate::UpdateKind::kGnssVelocity)) continue;
-    nis += r.nis;
-    dof += r.dof;
-  }
-  return dof > 0.0 ? nis / dof : 1.0;
-}
-
-}  // namespace
-
 // Turns tell a shift of the times to some 0.05 s, and now and then a false one. It is taken where the filter finds the fixes
 // likelier by it; the gate is open, so that both see the same fixes.
 void PreparedMission::choose_time_offset(const Progress& progress) {
@@ -63,29 +48,6 @@ void PreparedMission::choose_time_offset(const Progress& progress) {
   start_sensor_errors_.resize(0);
 }
 
-// The filter with the offset as a state. Where noise is stated too small, its sigma and its gain are as much too good as the
-// innovations are too large.
-void PreparedMission::test_time_offset() {
-  constexpr double kPriorSd = 0.5;  // s
-  constexpr double kLeast = 3e-3;   // s: less moves a car by centimetres
-  constexpr double kSigmas = 6.0;
-  constexpr double kLeastGain = 15.0;  // of the log-likelihood
-  double& sd = setup_.filter.auxiliary.time_offset_sd_s;
-  if (!setup_.unstated.time_offset || setup_.start || sd > 0.0) return;
-  estimate::FilterOptions options = setup_.filter;
-  options.gate_probability = 0.0;
-  const estimate::FilterResult without = first_minutes(options);
-  options.auxiliary.time_offset_sd_s = kPriorSd;
-  const estimate::FilterResult with = first_minutes(options);
-  const Eigen::Index at = *estimate::ForwardFilter(*mission_, setup_.model, options).layout().time_offset();
-  const double excess = std::max(1.0, nis_over_expected(with.innovations));
-  const double offset = with.last.x(at);
-  const double offset_sd = std::sqrt(excess * with.last.P(at, at));
-  const bool shown = std::abs(offset) > std::max(kLeast, kSigmas * offset_sd) &&
-                     with.log_likelihood - without.log_likelihood > kLeastGain * excess;
-  if (shown || setup_.time_offset_s != 0.0) sd = std::max(0.1, 2.0 * std::abs(offset));
-}
-
 void PreparedMission::take_out_velocity_lag() {
   if (!setup_.unstated.time_offset || !setup_.filter.use_gnss_velocity) return;
   velocity_lag_ = velocity_lag(gnss_);
@@ -99,7 +61,8 @@ void PreparedMission::test_noise() {
   constexpr double kRefused = 0.05;
   constexpr double kImpossible = 6.0;  // prior sigmas
   constexpr double kShaken = 8.0;      // times the white noise
-  constexpr std::size_t kFewest = 100;
+  constexpr double kFewest = 20.0, kFewestOfCorrelation = 100.0;
+  constexpr double kScatter = 4.0;  // sigmas of a mean of few squares
   const estimate::NoiseFitChoice& choice = setup_.unstated.noise;
   if (!(choice.gnss_scale || choice.imu_white_noise)) return;
   const Eigen::VectorXd found = start_sensor_errors_;
@@ -114,12 +77,14 @@ void PreparedMission::test_noise() {
   const auto refused = static_cast<double>(std::ranges::count(seen.innovations, false, &estimate::InnovationRecord::used));
   const double ratio = nis_over_expected(seen.innovations);
   // Innovations that are too small are the fixes' stated noise: no IMU noise makes them so.
-  const bool fits = (ratio > kSmallest || !choice.gnss_scale) && ratio < kLargest && refused < kRefused * innovations;
+  const double by_chance = kScatter * std::sqrt(2.0 / (3.0 * std::max(innovations, 1.0)));  // chi-square of three each
+  const bool fits = (ratio > std::min(kSmallest, 1.0 - by_chance) || !choice.gnss_scale) &&
+                    ratio < std::max(kLargest, 1.0 + by_chance) && refused < kRefused * innovations;
   const bool possible = !worst || worst->sigmas < kImpossible;
-  if (seen.innovations.size() < kFewest || (fits && possible)) return;
+  if (innovations < kFewest || (fits && possible)) return;
   if (!setup_.noise_fit) setup_.noise_fit = estimate::NoiseFitChoice{false, false, false};
   setup_.noise_fit->gnss_scale |= choice.gnss_scale;
-  setup_.noise_fit->correlated_gnss |= choice.correlated_gnss;
+  setup_.noise_fit->correlated_gnss |= choice.correlated_gnss && innovations >= kFewestOfCorrelation;
   setup_.noise_fit->imu_white_noise |= choice.imu_white_noise;
   noise_ratio_ = ratio;
   if (!choice.imu_white_noise || !has_gain_errors(setup_.model)) return;
@@ -155,15 +120,29 @@ void PreparedMission::adapt_drift() {
 }
 
 void PreparedMission::note_adaptations() {
-  constexpr double kNoted = 1e-3;  // s
-  const auto note = [this](const char* kind, std::string text) {
-    adaptations_.push_back({record::Event::Severity::kInfo, kind, std::move(text), std::nullopt, 1});
+  constexpr double kNoted = 1e-3;     // s, m
+  constexpr double kMeasured = 0.15;  // m: what a tape measure misses is not worth a warning
+  using Severity = record::Event::Severity;
+  const auto note = [this](const char* kind, std::string text, Severity severity = Severity::kInfo) {
+    adaptations_.push_back({severity, kind, std::move(text), std::nullopt, 1});
   };
   if (setup_.unstated.time_offset && std::abs(mission_->time_offset_s) > kNoted)
     note(
         "time_offset_found",
         fmt::format("The recording shows a time offset, which the run file does not state: gnss.time_offset_s: {:.4f} is used.",
                     mission_->time_offset_s));
+  if (const Eigen::Vector3d moved = mission_->lever_arm_b - setup_.lever_arm_b; tested_.lever_arm && moved.norm() > kNoted) {
+    // Zero is what one writes who has not measured it.
+    const bool contradicted = !setup_.lever_arm_b.isZero() && moved.norm() > kMeasured;
+    const Eigen::Vector3d &found = mission_->lever_arm_b, &stated = setup_.lever_arm_b;
+    note(contradicted ? "lever_arm_contradicted" : "lever_arm_found",
+         fmt::format("The recording shows the antenna at ({:.2f}, {:.2f}, {:.2f}) m +- ({:.2f}, {:.2f}, {:.2f}), forward right "
+                     "down of the IMU; the file says ({:.2f}, {:.2f}, {:.2f}). imu.lever_arm_m: [{:.3f}, {:.3f}, {:.3f}] is "
+                     "used; `imu.lever_arm_sd_m: 0` keeps what is stated.",
+                     found.x(), found.y(), found.z(), lever_arm_sd_.x(), lever_arm_sd_.y(), lever_arm_sd_.z(), stated.x(),
+                     stated.y(), stated.z(), found.x(), found.y(), found.z()),
+         contradicted ? Severity::kWarning : Severity::kInfo);
+  }
   if (velocity_lag_)
     note("velocity_lag_removed",
          fmt::format("GNSS velocities come {:.2f} s after the positions of the same file; they were moved to them.",

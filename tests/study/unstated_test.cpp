@@ -47,6 +47,47 @@ INSTANTIATE_TEST_SUITE_P(Shifts, TimeOffset,
                          testing::Values(Shift{0.0, 0.0}, Shift{0.0, 1.05}, Shift{0.08, 0.0}, Shift{-0.7, -0.66},
                                          Shift{1.5, 1.46}));
 
+struct WrongArm {
+  Eigen::Vector3d error;
+  double offset_s;
+};
+class LeverArm : public testing::TestWithParam<WrongArm> {};
+
+// Beside a time offset too. 4 sigma: one in 16000 for each component; a centimetre is what 5 Hz fixes of a centimetre leave.
+TEST_P(LeverArm, IsFoundWhereItIsWrongAndLeftWhereItIsRight) {
+  simulate::Scenario scenario = test::drive(360.0, 43);
+  scenario.gnss.time_offset = GetParam().offset_s;
+  simulate::SimulatedMission recording = simulate::simulate(scenario);
+  study::Setup setup = nothing_stated(scenario);
+  setup.unstated.lever_arm = true;
+  setup.lever_arm_b += GetParam().error;
+  const PreparedMission mission(std::move(recording.imu), std::move(recording.gnss), setup, {});
+  const bool wrong = !GetParam().error.isZero();
+  const bool large = GetParam().error.norm() > 0.15;  // more than a tape measure misses: a warning
+  EXPECT_EQ(adapted(mission, "lever_arm_contradicted"), large);
+  EXPECT_EQ(adapted(mission, "lever_arm_found"), wrong && !large);
+  EXPECT_EQ(adapted(mission, "time_offset_found"), GetParam().offset_s != 0.0);
+  EXPECT_FALSE(adapted(mission, "noise_adapted"));
+  EXPECT_NEAR(mission.mission().time_offset_s, GetParam().offset_s, 2e-3);
+  const Eigen::Vector3d left = mission.mission().lever_arm_b - scenario.gnss.lever_arm_b;
+  EXPECT_LT(left.head<2>().norm(), wrong ? 0.03 : 1e-9);
+  EXPECT_LT(std::abs(left.z()), wrong ? 0.1 : 1e-9);  // a car tilts by a degree or two
+}
+INSTANTIATE_TEST_SUITE_P(Arms, LeverArm,
+                         testing::Values(WrongArm{{0.0, 0.0, 0.0}, 0.0}, WrongArm{{-0.6, 0.4, 2.2}, 0.0},
+                                         WrongArm{{-0.3, 0.2, 0.0}, 0.0}, WrongArm{{-0.3, 0.2, 0.0}, 0.08},
+                                         WrongArm{{0.0, 0.0, 0.0}, 0.08}, WrongArm{{0.0, 0.12, 0.0}, 0.0}));
+
+TEST(Unstated, LeverArmThatIsStatedWithItsSigmaIsKept) {
+  const simulate::Scenario scenario = test::drive(360.0, 43);
+  simulate::SimulatedMission recording = simulate::simulate(scenario);
+  study::Setup setup = test::setup_of(scenario);
+  setup.unstated.time_offset = true;
+  setup.lever_arm_b.y() += 0.12;
+  const PreparedMission mission(std::move(recording.imu), std::move(recording.gnss), setup, {});
+  EXPECT_EQ(mission.mission().lever_arm_b, setup.lever_arm_b);
+}
+
 TEST(Unstated, NoiseThatInnovationsContradictIsFitted) {
   const simulate::Scenario scenario = test::drive(360.0, 33);
   simulate::SimulatedMission recording = simulate::simulate(scenario);

@@ -51,10 +51,11 @@ struct AlignmentInput {
 /// Standing still there: levels over the static period and takes the gyro bias from it; heading by gyrocompassing where gyro
 /// bias and noise allow better than 2 deg. In all other cases attitude and biases come from motion: means of specific force
 /// over seconds, carried by the gyro, are matched with the antenna's accelerations (second differences of position, or
-/// velocities where these are less noisy) over windows of 10 to 80 s, the first that gives 1 deg of heading or the best of 10
-/// min; the attitude is then carried back to the start by the gyro. No assumption on how the body points; unknown gyro biases
-/// of degrees per second are found along the way. Velocity and position of a moving start from the fixes behind it, with the
-/// motion between them as the IMU felt it. The standard deviations are what the residuals say, on the safe side.
+/// velocities where these are less noisy) over windows of 10 to 80 s (twelve intervals between fixes where these are longer),
+/// the first that gives 1 deg of heading or the best of 10 min; the attitude is then carried back to the start by the gyro. No
+/// assumption on how the body points; unknown gyro biases of degrees per second are found along the way. Velocity and position
+/// of a moving start from the fixes behind it, with the motion between them as the IMU felt it. The standard deviations are
+/// what the residuals say, on the safe side.
 /// @param vehicle_forward  body x points along the velocity to 4 deg (one sigma, mounting and sideslip): helps where there is
 ///                         little acceleration; driving backwards is recognised by the forces
 /// @throws NumericalError  IMU and GNSS do not overlap; too little motion for 15 deg of heading and no gyrocompassing: the

@@ -22,6 +22,7 @@ struct Unstated {
   estimate::NoiseFitChoice noise{
       .gnss_scale = false, .correlated_gnss = false, .imu_white_noise = false};  ///< fitted where innovations contradict it
   bool time_offset = false;                                                      ///< estimated where the innovations show one
+  bool lever_arm = false;  ///< estimated where they show another than the stated one
   double time_offset_seen_s =
       0.0;  ///< as the turns of IMU and GNSS tell it, to 0.05 s; taken where the filter finds it likelier
 };
@@ -48,6 +49,22 @@ struct Setup {
   std::optional<estimate::BatchOptions> batch;
   /// Tight coupling, of the prepared mission alone: it is prepared with the fixes.
   std::shared_ptr<const estimate::CarrierObservations> carrier;
+};
+
+/// Which of the two that say where the antenna was at the time of a fix.
+struct AntennaChoice {
+  bool time_offset = false;
+  bool lever_arm = false;
+};
+
+/// What the first minutes say of them: differences from what is stated, zero where not estimated.
+struct AntennaFit {
+  double log_likelihood = 0.0;
+  double excess = 1.0;  ///< squared innovations over their expectation, at least 1; the sigmas are widened by it
+  double time_offset_s = 0.0;
+  double time_offset_sd_s = 0.0;
+  Eigen::Vector3d lever_arm_m = Eigen::Vector3d::Zero();
+  Eigen::Vector3d lever_arm_sd_m = Eigen::Vector3d::Zero();
 };
 
 /// A mission in body axes, aligned. Owns its recordings.
@@ -107,7 +124,13 @@ class PreparedMission {
   void fit_and_adopt(const Progress& progress);
   void choose_time_offset(const Progress& progress);
   void take_out_velocity_lag();
-  void test_time_offset();
+  [[nodiscard]] AntennaChoice antenna_to_test() const;
+  [[nodiscard]] bool antenna_is_estimated() const;
+  [[nodiscard]] estimate::FilterState antenna_as_stated(estimate::FilterState state, const estimate::StateLayout& layout) const;
+  [[nodiscard]] AntennaFit fit_antenna(AntennaChoice estimated);
+  void test_antenna();
+  void take_antenna(AntennaChoice shown, const AntennaFit& found);
+  void free_antenna();
   void test_noise();
   void adapt_drift();
   void note_adaptations();
@@ -125,6 +148,8 @@ class PreparedMission {
   std::optional<estimate::NoiseFit> noise_fit_;
   std::optional<double> noise_ratio_;  ///< squared innovations over their expectation, where that had the noise fitted
   std::optional<double> velocity_lag_;
+  AntennaChoice tested_;  ///< which the configuration leaves to the data
+  Eigen::Vector3d lever_arm_sd_ = Eigen::Vector3d::Zero();
   bool gain_errors_left_out_ = false;
   bool heading_assumed_ = false;
   DriftFactors drift_;

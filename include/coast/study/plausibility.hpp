@@ -3,8 +3,9 @@
 
 #include <optional>
 #include <string>
+#include <vector>
 
-#include "coast/estimate/state_layout.hpp"
+#include "coast/estimate/forward_filter.hpp"
 #include "coast/record/imu.hpp"
 
 namespace coast::study {
@@ -15,6 +16,10 @@ struct SensorError {
 };
 /// The sensor state that is farthest from its prior; nothing where no state has one.
 [[nodiscard]] std::optional<SensorError> largest_sensor_error(const estimate::StateLayout& layout, const Eigen::VectorXd& x);
+
+/// Squared innovations of the GNSS positions and velocities that were used, over their expectation: 1 where noise is as stated,
+/// and where there are none.
+[[nodiscard]] double nis_over_expected(const std::vector<estimate::InnovationRecord>& innovations);
 
 /// Scatter from sample to sample over what the model's white noise makes of it, the larger of gyro and accelerometer, each the
 /// median over seconds (1 for an IMU at rest): vibration, where it is above some units.

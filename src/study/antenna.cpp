@@ -1,0 +1,147 @@
+// Where the antenna was, and when: lever arm and time offset, tested where the configuration leaves them to the data, and
+// refined.
+
+#include <algorithm>
+#include <cmath>
+
+#include "coast/study/mission.hpp"
+#include "coast/study/plausibility.hpp"
+
+namespace coast::study {
+
+namespace {
+
+constexpr double kWideTime = 0.5;  // s: a fifth of a second is what turns leave open
+constexpr double kWideArm = 1.0;   // m: with its signs turned, a car's arm is two of these off
+
+}  // namespace
+
+AntennaChoice PreparedMission::antenna_to_test() const {
+  if (setup_.start) return {};
+  const estimate::AuxiliaryStates& stated = setup_.filter.auxiliary;
+  return {.time_offset = setup_.unstated.time_offset && stated.time_offset_sd_s == 0.0,
+          .lever_arm = setup_.unstated.lever_arm && stated.lever_arm_sd_m == 0.0};
+}
+
+bool PreparedMission::antenna_is_estimated() const {
+  const estimate::AuxiliaryStates& now = setup_.filter.auxiliary;
+  return now.time_offset_sd_s > 0.0 || now.lever_arm_sd_m > 0.0;
+}
+
+void PreparedMission::free_antenna() {
+  if (tested_.time_offset) setup_.filter.auxiliary.time_offset_sd_s = kWideTime;
+  if (tested_.lever_arm) setup_.filter.auxiliary.lever_arm_sd_m = kWideArm;
+}
+
+// The prior stays where the configuration put it, wherever the filter is linearised.
+estimate::FilterState PreparedMission::antenna_as_stated(estimate::FilterState state,
+                                                         const estimate::StateLayout& layout) const {
+  if (layout.time_offset()) state.x(*layout.time_offset()) = setup_.time_offset_s - mission_->time_offset_s;
+  if (layout.lever_arm()) state.x.segment<3>(*layout.lever_arm()) = setup_.lever_arm_b - mission_->lever_arm_b;
+  return state;
+}
+
+// The gate is open, so that every candidate sees the same fixes.
+AntennaFit PreparedMission::fit_antenna(AntennaChoice estimated) {
+  const double time = mission_->time_offset_s;
+  const Eigen::Vector3d arm = mission_->lever_arm_b;
+  estimate::FilterOptions options = setup_.filter;
+  options.gate_probability = 0.0;
+  if (tested_.time_offset) {
+    options.auxiliary.time_offset_sd_s = estimated.time_offset ? kWideTime : 0.0;
+    if (!estimated.time_offset) mission_->time_offset_s = setup_.time_offset_s;
+  }
+  if (tested_.lever_arm) {
+    options.auxiliary.lever_arm_sd_m = estimated.lever_arm ? kWideArm : 0.0;
+    if (!estimated.lever_arm) mission_->lever_arm_b = setup_.lever_arm_b;
+  }
+  const estimate::FilterResult run = first_minutes(options);
+  const estimate::StateLayout layout = estimate::ForwardFilter(*mission_, setup_.model, options).layout();
+  AntennaFit fit{.log_likelihood = run.log_likelihood, .excess = std::max(1.0, nis_over_expected(run.innovations))};
+  if (estimated.time_offset) {
+    const Eigen::Index at = *layout.time_offset();
+    fit.time_offset_s = mission_->time_offset_s - setup_.time_offset_s + run.last.x(at);
+    fit.time_offset_sd_s = std::sqrt(fit.excess * run.last.P(at, at));
+  }
+  if (estimated.lever_arm) {
+    const Eigen::Index at = *layout.lever_arm();
+    fit.lever_arm_m = mission_->lever_arm_b - setup_.lever_arm_b + run.last.x.segment<3>(at);
+    fit.lever_arm_sd_m = (fit.excess * run.last.P.diagonal().segment<3>(at)).cwiseSqrt();
+  }
+  mission_->time_offset_s = time;
+  mission_->lever_arm_b = arm;
+  return fit;
+}
+
+// Each is estimated where it is many sigmas from what is stated and the fixes are much likelier by it, beside the other. At an
+// even speed one stands for the other and neither is shown beside it: then each is tested alone. Where noise is stated too
+// small, sigma and gain are as much too good as the innovations are too large.
+void PreparedMission::test_antenna() {
+  constexpr double kSigmas = 6.0;
+  constexpr double kLeastGain = 15.0;  // of the log-likelihood
+  constexpr double kLeastTime = 3e-3;  // s: less moves a car by centimetres
+  constexpr double kLeastArm = 0.03;   // m
+  if (!tested_.time_offset && !tested_.lever_arm) return;
+  const auto late = [&](const AntennaFit& fit) {
+    return std::abs(fit.time_offset_s) > std::max(kLeastTime, kSigmas * fit.time_offset_sd_s);
+  };
+  const auto elsewhere = [&](const AntennaFit& fit) {
+    return (fit.lever_arm_m.array().abs() > (kSigmas * fit.lever_arm_sd_m.array()).max(kLeastArm)).any();
+  };
+  const auto likelier = [&](const AntennaFit& with, const AntennaFit& without) {
+    return with.log_likelihood - without.log_likelihood > kLeastGain * with.excess;
+  };
+  AntennaFit found = fit_antenna(tested_);
+  const AntennaFit time_alone = tested_.lever_arm ? fit_antenna({tested_.time_offset, false}) : found;
+  const AntennaFit arm_alone = tested_.time_offset ? fit_antenna({false, tested_.lever_arm}) : found;
+  const AntennaFit neither = fit_antenna({false, false});
+  AntennaChoice shown{
+      .time_offset = tested_.time_offset && late(found) && likelier(found, tested_.lever_arm ? arm_alone : neither),
+      .lever_arm = tested_.lever_arm && elsewhere(found) && likelier(found, tested_.time_offset ? time_alone : neither)};
+  if (!shown.time_offset && !shown.lever_arm && tested_.time_offset && tested_.lever_arm) {
+    const bool time_first = time_alone.log_likelihood >= arm_alone.log_likelihood;
+    shown.time_offset = time_first && late(time_alone) && likelier(time_alone, neither);
+    shown.lever_arm = !time_first && elsewhere(arm_alone) && likelier(arm_alone, neither);
+    found = time_first ? time_alone : arm_alone;
+  }
+  take_antenna(shown, found);
+}
+
+void PreparedMission::take_antenna(AntennaChoice shown, const AntennaFit& found) {
+  constexpr double kSdTime = 0.1,
+                   kSdArm = 0.1;  // s, m: at least; twice what was found, so that the prior does not hold it back
+  estimate::AuxiliaryStates& auxiliary = setup_.filter.auxiliary;
+  if (tested_.time_offset) {
+    const bool taken = shown.time_offset || setup_.time_offset_s != 0.0;
+    auxiliary.time_offset_sd_s = taken ? std::max(kSdTime, 2.0 * std::abs(found.time_offset_s)) : 0.0;
+    if (!taken) mission_->time_offset_s = setup_.time_offset_s;
+  }
+  if (tested_.lever_arm) {
+    auxiliary.lever_arm_sd_m = shown.lever_arm ? std::max(kSdArm, 2.0 * found.lever_arm_m.lpNorm<Eigen::Infinity>()) : 0.0;
+    lever_arm_sd_ = found.lever_arm_sd_m;
+    if (!shown.lever_arm) mission_->lever_arm_b = setup_.lever_arm_b;
+  }
+}
+
+// The offset enters as velocity times time, which holds for milliseconds, and whatever else compares with fixes wants them
+// where they belong: time offset and lever arm take what was found until nothing is.
+void PreparedMission::refine_antenna(const Progress& progress) {
+  constexpr int kRounds = 5;
+  constexpr double kSettledTime = 5e-4;  // s
+  constexpr double kSettledArm = 1e-3;   // m
+  for (int round = 0; round < kRounds; ++round) {
+    if (!antenna_is_estimated()) return;
+    if (progress) progress("finding antenna and time offset", static_cast<double>(round) / kRounds);
+    const estimate::ForwardFilter filter(*mission_, setup_.model, setup_.filter);
+    const estimate::StateLayout& layout = filter.layout();
+    const Eigen::VectorXd x = filter.run(antenna_as_stated(start_state(filter), layout), {}).last.x;
+    const double time = layout.time_offset() ? x(*layout.time_offset()) : 0.0;
+    const Eigen::Vector3d arm = layout.lever_arm() ? x.segment<3>(*layout.lever_arm()).eval() : Eigen::Vector3d::Zero();
+    if (std::abs(time) < kSettledTime && arm.norm() < kSettledArm) return;
+    mission_->time_offset_s += time;
+    mission_->lever_arm_b += arm;
+    refine_start(progress);
+  }
+}
+
+}  // namespace coast::study
