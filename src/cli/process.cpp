@@ -6,11 +6,13 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <memory>
 
 #include "background_sink.hpp"
 #include "coast/io/writers.hpp"
 #include "coast/noise/chi_square.hpp"
 #include "coast/report/render.hpp"
+#include "coast/study/causes.hpp"
 #include "coast/study/outage_runs.hpp"
 #include "load.hpp"
 #include "process_page.hpp"
@@ -54,9 +56,10 @@ class Scores {
 /// The run, stage by stage; each stage leaves its part in `result`.
 class ProcessRun {
  public:
-  ProcessRun(const RunConfig& config, Recordings recordings, study::Setup setup, std::filesystem::path out,
-             const study::Progress& progress)
+  ProcessRun(const RunConfig& config, Recordings recordings, study::Setup setup, const study::Excerpt& excerpt,
+             std::filesystem::path out, const study::Progress& progress)
       : config_(config),
+        excerpt_(excerpt),
         out_(std::move(out)),
         progress_(progress),
         result_(what_was_read(recordings)),
@@ -77,6 +80,7 @@ class ProcessRun {
   void check_lever_arm();
   void separate_forward_and_backward();
   void judge();
+  void rank_causes();
   [[nodiscard]] const Judgement& verdict() const { return result_.verdict; }
   [[nodiscard]] const record::Events& adaptations() const { return mission_.adaptations(); }
   /// summary.json, report.html, report.json, run.resolved.yaml. @return the lines for the terminal
@@ -95,6 +99,7 @@ class ProcessRun {
   void doubt_lever_arm();
 
   const RunConfig& config_;
+  const study::Excerpt& excerpt_;  ///< as read
   std::filesystem::path out_;
   const study::Progress& progress_;
   ProcessResult result_;
@@ -351,7 +356,13 @@ void ProcessRun::judge() {
   const estimate::FilterState& last = solution_.forward.last;
   if (auto check = sensor_check(solution_.filter->layout(), last.x)) checks.push_back(std::move(*check));
   result_.verdict = cli::judge(result_, std::move(checks));
+  if (result_.verdict.standing() != Standing::kGood) rank_causes();
   result_.verdict.accepted = config_.accept;
+}
+
+void ProcessRun::rank_causes() {
+  result_.verdict.causes = study::rank_causes(excerpt_, setup_);
+  if (const std::string cause = told(result_.verdict.causes); !cause.empty()) result_.verdict.likely_cause = cause;
 }
 
 void ProcessRun::separate_forward_and_backward() {
@@ -437,6 +448,20 @@ void refuse_hopeless(const RunConfig& config, const Recordings& recordings) {
                            event.text + " (`accept: true` processes it all the same)");
 }
 
+// Where no start is found, a mistake that would explain it is told beside the reason.
+std::unique_ptr<ProcessRun> prepare(const RunConfig& config, Recordings recordings, study::Setup setup,
+                                    const study::Excerpt& excerpt, const std::filesystem::path& out,
+                                    const study::Progress& progress) {
+  const study::Setup stated = setup;
+  try {
+    return std::make_unique<ProcessRun>(config, std::move(recordings), std::move(setup), excerpt, out, progress);
+  } catch (const NumericalError& error) {
+    const std::string cause = told(study::rank_causes(excerpt, stated));
+    if (cause.empty()) throw;
+    throw NumericalError("start", "", fmt::format("{} Most likely cause: {}", error.what(), cause));
+  }
+}
+
 }  // namespace
 
 void process(const std::filesystem::path& run_yaml, const CommonOptions& options) {
@@ -456,7 +481,9 @@ void process(const std::filesystem::path& run_yaml, const CommonOptions& options
   print_inspection(recordings, options.quiet);
   refuse_hopeless(config, recordings);
   take_out_effects(config, recordings, setup, progress);
-  ProcessRun run(config, std::move(recordings), std::move(setup), out, progress);
+  const study::Excerpt excerpt = study::excerpt_of(recordings.imu, recordings.gnss);
+  const std::unique_ptr<ProcessRun> prepared = prepare(config, std::move(recordings), std::move(setup), excerpt, out, progress);
+  ProcessRun& run = *prepared;
   line.clear();
   if (!options.quiet)
     for (const record::Event& event : run.adaptations()) fmt::print("{}\n", event.text);

@@ -107,6 +107,11 @@ Json separation_json(const std::vector<Separation>& separations) {
 Json verdict_json(const Judgement& verdict) {
   Json j{{"standing", name(verdict.standing())}, {"accepted", verdict.accepted}};
   if (!verdict.likely_cause.empty()) j["likely_cause"] = verdict.likely_cause;
+  constexpr std::size_t kTold = 5;
+  for (std::size_t i = 0; i < std::min(kTold, verdict.causes.size()); ++i) {
+    const study::Cause& cause = verdict.causes[i];
+    j["causes_by_likelihood"].push_back({{"what", cause.what}, {"remedy", cause.remedy}, {"log_likelihood_gain", cause.gain}});
+  }
   j["checks"] = Json::array();
   for (const Check& check : verdict.checks) {
     Json c{{"name", check.name}, {"standing", name(check.standing())}, {"value", check.value}, {"good_up_to", check.good}};

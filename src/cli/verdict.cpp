@@ -218,6 +218,14 @@ std::string likely_cause(const ProcessResult& result) {
 
 }  // namespace
 
+std::string told(const std::vector<study::Cause>& causes) {
+  if (causes.empty()) return "";
+  const study::Cause& first = causes.front();
+  std::string text = fmt::format("{}: {} (log-likelihood of some minutes +{:.0f}", first.what, first.remedy, first.gain);
+  if (causes.size() > 1) text += fmt::format("; next, {}, +{:.0f}", causes[1].what, causes[1].gain);
+  return text + ")";
+}
+
 Judgement judge(const ProcessResult& result, std::vector<Check> motion) {
   Judgement judgement{std::move(motion)};
   add_innovations(result, judgement.checks);

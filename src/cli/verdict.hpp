@@ -7,6 +7,7 @@
 
 #include "coast/estimate/forward_filter.hpp"
 #include "coast/record/trajectory.hpp"
+#include "coast/study/causes.hpp"
 
 namespace coast::cli {
 
@@ -25,8 +26,9 @@ struct Check {
 
 struct Judgement {
   std::vector<Check> checks;
-  std::string likely_cause = {};  ///< a sentence; empty where nothing failed or nothing explains it
-  bool accepted = false;          ///< by the configuration
+  std::string likely_cause = {};          ///< a sentence; empty where nothing failed or nothing explains it
+  std::vector<study::Cause> causes = {};  ///< by likelihood, the likeliest first
+  bool accepted = false;                  ///< by the configuration
   [[nodiscard]] Standing standing() const;
   /// "good: .." or the checks that failed and the likely cause, a line.
   [[nodiscard]] std::string line() const;
@@ -61,6 +63,9 @@ class MotionChecks {
 
 /// Sensor states at the end of the forward run against what the error model gives them beforehand: the largest in sigmas.
 [[nodiscard]] std::optional<Check> sensor_check(const estimate::StateLayout& layout, const Eigen::VectorXd& x);
+
+/// The likeliest cause and the next one, a sentence; empty where there is none.
+[[nodiscard]] std::string told(const std::vector<study::Cause>& causes);
 
 /// All checks of a run, and the likeliest cause of those that fail.
 /// @param motion  of the delivered solution, and whatever else was checked
