@@ -83,7 +83,8 @@ void add_calibrate(CLI::App& app, std::filesystem::path& input, CommonOptions& c
       ->required();
   calibrate->footer(
       fmt::format("Examples:\n  coast calibrate imu.csv --out imu-model\n  coast calibrate calibration.yaml\n\n"
-                  "calibration.yaml:\n{}\n\nstudy.yaml, the estimators on simulated records of known processes:\n{}",
+                  "calibration.yaml (all keys: docs/reference/calibrate.md):\n{}\n\nstudy.yaml, the estimators on simulated "
+                  "records of known processes:\n{}",
                   coast::cli::calibration_example("  "), coast::cli::estimator_study_example("  ")));
   calibrate->callback([&input, &common] {
     if (input.extension() == ".yaml") coast::cli::require_kind(input, "calibrate");
@@ -98,10 +99,11 @@ void add_synth(CLI::App& app, std::filesystem::path& input, CommonOptions& commo
   auto* synth =
       subcommand(app, "synth", "several IMUs -> one synthetic IMU: mean, weighted, garch, corrected or extended", "", common);
   synth->add_option("array", input, "array.yaml, or study.yaml")->required();
-  synth->footer(fmt::format(
-      "Example:\n  coast synth array.yaml --out synthetic\n\narray.yaml:\n{}\n\nstudy.yaml, simulated arrays with known "
-      "truth:\n{}",
-      coast::cli::array_example("  "), coast::cli::array_study_example("  ")));
+  synth->footer(
+      fmt::format("Example:\n  coast synth array.yaml --out synthetic\n\narray.yaml (all keys: "
+                  "docs/reference/synth.md):\n{}\n\nstudy.yaml, simulated arrays with known "
+                  "truth:\n{}",
+                  coast::cli::array_example("  "), coast::cli::array_study_example("  ")));
   synth->callback([&input, &common] {
     coast::cli::require_kind(input, "synth");
     if (coast::cli::is_array_study(input))
@@ -114,7 +116,8 @@ void add_synth(CLI::App& app, std::filesystem::path& input, CommonOptions& commo
 void add_ppk(CLI::App& app, std::filesystem::path& input, CommonOptions& common) {
   auto* ppk = subcommand(app, "ppk", "RINEX of rover and base -> fixed carrier-phase positions", "", common);
   ppk->add_option("input", input, "run.yaml with gnss: {ppk: ..}, or ppk.yaml")->required();
-  ppk->footer(fmt::format("Example:\n  coast ppk ppk.yaml --out positions\n\nppk.yaml:\n{}", coast::cli::ppk_example("  ")));
+  ppk->footer(fmt::format("Example:\n  coast ppk ppk.yaml --out positions\n\nppk.yaml (all keys: docs/reference/ppk.md):\n{}",
+                          coast::cli::ppk_example("  ")));
   ppk->callback([&input, &common] {
     coast::cli::require_kind(input, "ppk");
     coast::cli::ppk(input, common);
@@ -134,8 +137,10 @@ void add_compare(CLI::App& app, std::filesystem::path& first, std::filesystem::p
 }
 
 void add_diagnose(CLI::App& app, std::filesystem::path& input, coast::cli::DiagnoseOptions& choice, CommonOptions& common) {
-  auto* diagnose = subcommand(app, "diagnose", "what the configured model leaves out: where, what, how sure, what it gains",
-                              "coast diagnose run.yaml --out diagnosis", common);
+  auto* diagnose = subcommand(
+      app, "diagnose", "what the configured model leaves out: where, what, how sure, what it gains",
+      "coast diagnose run.yaml --out diagnosis\n\nWhat it takes otherwise than coast process: docs/reference/diagnose.md",
+      common);
   diagnose->add_option("run", input, "run.yaml, as for `coast process`")->required();
   diagnose->add_option("--twins", choice.twins, "simulated twins that the recording is set against; 0: none")
       ->check(CLI::Range(0, 1000))
