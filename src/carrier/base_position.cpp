@@ -7,7 +7,9 @@
 #include <cmath>
 #include <map>
 #include <memory>
+#include <numbers>
 
+#include "coast/geo/units.hpp"
 #include "coast/record/error.hpp"
 
 namespace coast::carrier {
@@ -122,21 +124,36 @@ std::string metres(double distance) {
   return distance < 10e3 ? fmt::format("{:.1f} m", distance) : fmt::format("{:.0f} km", 1e-3 * distance);
 }
 
-/// A rover's file in the base's place, or a base that moves and is not said to.
-std::optional<record::Event> motion_of(const OwnPosition& own, const ObservationRecording& base) {
+/// A receiver that is said to be at rest, and is not.
+std::optional<record::Event> motion_of(const OwnPosition& own, const ObservationRecording& receiver, const char* code,
+                                       const std::string& what, const std::string& what_to_do) {
   constexpr double kDoubtful = 30.0, kUnmistakable = 50.0;  // m
   constexpr double kSigmas = 5.0;
   if (own.spread < std::max(kDoubtful, kSigmas * own.spread_sd)) return std::nullopt;
   const std::string found =
-      fmt::format("the file given as base moves by {} (sigma {:.1f} m) by its own codes", metres(own.spread), own.spread_sd);
-  const std::string what_to_do = "Are rover and base exchanged? Exchange `rover` and `base`, or say base_position: moving.";
-  if (own.spread > kUnmistakable) throw InputError({base.source, 0, found, "a receiver at rest", what_to_do});
-  return record::Event{record::Event::Severity::kWarning, "base_moves",
-                       fmt::format("{}: {}. {}", base.source, found, what_to_do), std::nullopt, 1};
+      fmt::format("{} moves by {} (sigma {:.1f} m) by its own codes", what, metres(own.spread), own.spread_sd);
+  if (own.spread > kUnmistakable) throw InputError({receiver.source, 0, found, "a receiver at rest", what_to_do});
+  return record::Event{record::Event::Severity::kWarning, code, fmt::format("{}: {}. {}", receiver.source, found, what_to_do),
+                       std::nullopt, 1};
 }
 
-/// " Its y has the wrong sign.", where another sign of some coordinates fits.
-std::string sign_in_words(const Eigen::Vector3d& stated_e, const Eigen::Vector3d& own_e) {
+/// Geodetic coordinates given otherwise than in degrees, latitude first.
+std::string order_in_words(const Eigen::Vector3d& stated_e, const Eigen::Vector3d& own_e) {
+  constexpr double kFits = 20e3;  // m: radians with four figures
+  constexpr double kRightAngle = 0.5 * std::numbers::pi;
+  const auto fits = [&](double latitude, double longitude, double height) {
+    return std::abs(latitude) <= kRightAngle && std::abs(longitude) <= 2.0 * kRightAngle &&
+           (geo::ecef_from_geodetic({latitude, longitude, height}) - own_e).norm() < kFits;
+  };
+  const geo::Geodetic stated = geo::geodetic_from_ecef(stated_e);
+  if (fits(stated.longitude, stated.latitude, stated.height)) return "With latitude and longitude exchanged it fits. ";
+  if (fits(stated.latitude / geo::kDegree, stated.longitude / geo::kDegree, stated.height))
+    return "With its angles taken as radians it fits: geodetic_deg_m is in degrees. ";
+  return "";
+}
+
+/// "With the sign of y changed it fits", where another sign of some coordinates, or another order or unit does.
+std::string mistake_in_words(const Eigen::Vector3d& stated_e, const Eigen::Vector3d& own_e) {
   constexpr double kFits = 1e3;  // m
   constexpr std::array kNames{"", "x", "y", "x and y", "z", "x and z", "y and z", "x, y and z"};
   for (std::size_t flipped = 1; flipped < kNames.size(); ++flipped) {
@@ -145,7 +162,15 @@ std::string sign_in_words(const Eigen::Vector3d& stated_e, const Eigen::Vector3d
       if ((flipped >> i & 1U) != 0) other_e(i) = -other_e(i);
     if ((other_e - own_e).norm() < kFits) return fmt::format("With the sign of {} changed it fits: a sign? ", kNames[flipped]);
   }
-  return "";
+  return order_in_words(stated_e, own_e);
+}
+
+void check_antenna(const ObservationRecording& base) {
+  constexpr double kHighest = 50.0;  // m
+  const double off = base.antenna_offset_enu.norm();
+  if (off > kHighest)
+    throw InputError({base.source, 0, fmt::format("an antenna {:.0f} m from its marker (ANTENNA: DELTA H/E/N)", off), "metres",
+                      "Millimetres? Correct the header."});
 }
 
 }  // namespace
@@ -154,10 +179,13 @@ record::Events examine_base(const BaseAt& base_at, const KnownBase& known, const
                             const Orbits& orbits, const DifferenceOptions& options) {
   constexpr double kElsewhere = 10e3, kDoubtful = 10.0, kDoubtfulHeader = 3.0;  // m
   if (base_at.how == BaseAt::How::kMoving) return {};
+  check_antenna(base);
   const auto own = own_position(base, orbits, options);
   if (!own) return {};
   record::Events events;
-  if (const auto moves = motion_of(*own, base)) events.push_back(*moves);
+  if (const auto moves = motion_of(*own, base, "base_moves", "the file given as base",
+                                   "Are rover and base exchanged? Exchange `rover` and `base`, or say base_position: moving."))
+    events.push_back(*moves);
   if (base_at.how == BaseAt::How::kAverage) return events;
   const bool unstated = base_at.how == BaseAt::How::kUnstated;
   const bool header = unstated || base_at.how == BaseAt::How::kHeader;
@@ -172,7 +200,7 @@ record::Events examine_base(const BaseAt& base_at, const KnownBase& known, const
                   unstated ? ", or base_position: header where the header's is good to centimetres" : "");
   if (off > kElsewhere)
     throw InputError(
-        {base.source, 0, found, "metres", sign_in_words(known.r_e, own->frame.to_ecef(own->median_n)) + what_to_do});
+        {base.source, 0, found, "metres", mistake_in_words(known.r_e, own->frame.to_ecef(own->median_n)) + what_to_do});
   const double bound = header ? std::max(kDoubtfulHeader, 2.0 * sd) : std::max(kDoubtful, 5.0 * sd);
   if (!unstated && off < bound) return events;
   events.push_back(
@@ -182,6 +210,23 @@ record::Events examine_base(const BaseAt& base_at, const KnownBase& known, const
                    base.source, found, off_n.x(), off_n.y(), -off_n.z(), what_to_do),
        std::nullopt, 1});
   return events;
+}
+
+record::Events examine_static_rover(const ObservationRecording& rover, const Orbits& orbits, const DifferenceOptions& options) {
+  record::Events events;
+  if (const auto own = own_position(rover, orbits, options))
+    if (const auto moves = motion_of(*own, rover, "rover_moves", "the rover", "Say motion: kinematic, or leave it out."))
+      events.push_back(*moves);
+  return events;
+}
+
+bool same_observations(const ObservationRecording& a, const ObservationRecording& b) {
+  const auto at = std::ranges::find(b.epochs, a.epochs.front().t, &record::ObservationEpoch::t);
+  if (at == b.epochs.end() || a.epochs.front().observations.empty()) return false;
+  return std::ranges::equal(
+      a.epochs.front().observations, at->observations, [](const record::Observation& one, const record::Observation& other) {
+        return one.satellite == other.satellite && one.code_m == other.code_m && one.phase_cycles == other.phase_cycles;
+      });
 }
 
 KnownBase known_base(const BaseAt& base_at, const ObservationRecording& base, const Orbits& orbits,

@@ -91,6 +91,8 @@ void diagnose(const std::filesystem::path& run_yaml, const DiagnoseOptions& choi
                     {"diagnosis.json", "run.diagnosed.yaml", "error_model.diagnosed.yaml", "report.json", "report.html"});
   line.clear();
   print_inspection(recordings, options.quiet);
+  refuse_wrong_axes(config, recordings);
+  refuse_wrong_units(config, recordings);
   const diagnose::MissionInput input = recorded_input(run_yaml, config, recordings);
   const std::vector<diagnose::MissionInput> simulations = simulated_inputs(choice.simulation, input.setup, choice.twins);
   std::optional<SimulationCheck> simulation;

@@ -120,6 +120,22 @@ study::Setup setup_of(const RunConfig& config, const Recordings& recordings, con
   return setup;
 }
 
+void refuse_wrong_axes(const RunConfig& config, const Recordings& recordings) {
+  if (config.accept) return;
+  for (const record::Event& event : recordings.inspection_events)
+    if (event.kind == "gravity_sign" || event.kind == "gravity_axis" || (event.kind == "gyro_sign" && !config.tight))
+      throw NumericalError("the axes contradict gravity or the course", "",
+                           event.text + " (`accept: true` processes it all the same)");
+}
+
+void refuse_wrong_units(const RunConfig& config, const Recordings& recordings) {
+  if (config.accept) return;
+  for (const record::Event& event : recordings.inspection_events)
+    if (event.kind == "gyro_unit" || event.kind == "specific_force_unit")
+      throw NumericalError("the units contradict gravity or the course", "",
+                           event.text + " (`accept: true` searches all the same)");
+}
+
 void take_out_effects(const RunConfig& config, Recordings& recordings, study::Setup& setup, const study::Progress& progress) {
   if (config.effects.empty()) return;
   diagnose::MissionInput without =

@@ -29,6 +29,12 @@ struct Recordings {
 [[nodiscard]] Recordings load(const RunConfig& config, const std::function<void(double)>& ppk_progress = {});
 /// First thing on the terminal: what was understood, and the warnings.
 void print_inspection(const Recordings& recordings, bool quiet);
+/// Nothing sensible follows where gravity points the wrong way at rest.
+/// @throws NumericalError  axes that contradict gravity or the course, and nothing says `accept: true`
+void refuse_wrong_axes(const RunConfig& config, const Recordings& recordings);
+/// Where the size of gravity or of turns is out by a unit, a search would explain the unit by many effects.
+/// @throws NumericalError  likewise
+void refuse_wrong_units(const RunConfig& config, const Recordings& recordings);
 /// The setup of run.yaml with what depends on the recordings: a given start in their week, and where the first outage begins.
 [[nodiscard]] study::Setup setup_of(const RunConfig& config, const Recordings& recordings,
                                     const std::optional<study::OutageSweep>& sweep);

@@ -1,6 +1,8 @@
 #include <fmt/format.h>
 
+#include "coast/geo/units.hpp"
 #include "coast/io/writers.hpp"
+#include "coast/record/error.hpp"
 #include "coast/report/render.hpp"
 #include "commands.hpp"
 #include "load.hpp"
@@ -26,9 +28,14 @@ void ppk(const std::filesystem::path& input, const CommonOptions& options) {
   line.clear();
   for (const record::Event& event : result.events)
     if (event.severity == record::Event::Severity::kWarning) fmt::print(stderr, "warning: {}\n", event.text);
-  if (options.quiet) return;
-  for (const std::string& sentence : ppk_sentences(result)) fmt::print("{}\n", sentence);
-  fmt::print("positions: {}\n", (out / "ppk.pos").string());
+  if (!options.quiet)
+    for (const std::string& sentence : ppk_sentences(result)) fmt::print("{}\n", sentence);
+  if (result.fixes.fixes.empty())
+    throw NumericalError("no epoch with a position", "",
+                         fmt::format("fewer than four satellites above elevation_mask_deg: {:g} whose codes agree; {} shows "
+                                     "what was seen",
+                                     config.options.differences.elevation_mask / geo::kDegree, (out / "report.html").string()));
+  if (!options.quiet) fmt::print("positions: {}\n", (out / "ppk.pos").string());
 }
 
 }  // namespace coast::cli

@@ -4,6 +4,7 @@
 #include <fmt/ranges.h>
 
 #include <array>
+#include <cmath>
 
 #include "coast/geo/earth.hpp"
 #include "coast/geo/units.hpp"
@@ -36,12 +37,22 @@ std::vector<std::filesystem::path> paths(const Node& node) {
 }
 
 Eigen::Vector3d given_position(const Node& node) {
-  const auto ecef = node.find("ecef_m");
-  if (!ecef) return geo::ecef_from_geodetic(geodetic_from(node.at("geodetic_deg_m")));
   constexpr double kLeast = 6.2e6, kMost = 7e6;  // m from the Earth's centre
-  const double radius = ecef->vector3().norm();
-  if (!(radius > kLeast && radius < kMost)) throw ecef->error("a point not on the Earth", "x, y, z in m, ECEF");
-  return ecef->vector3();
+  const auto on_earth = [](double radius) { return radius > kLeast && radius < kMost; };
+  const auto ecef = node.find("ecef_m");
+  if (!ecef) {
+    const Node geodetic = node.at("geodetic_deg_m");
+    if (on_earth(geodetic.vector3().norm()))
+      throw geodetic.error("x, y, z in m, ECEF", "[latitude_deg, longitude_deg, height_m]", "Give them as ecef_m.");
+    return geo::ecef_from_geodetic(geodetic_from(geodetic));
+  }
+  const Eigen::Vector3d r_e = ecef->vector3();
+  if (on_earth(r_e.norm())) return r_e;
+  const bool degrees = std::abs(r_e.x()) <= 90.0 && std::abs(r_e.y()) <= 360.0;
+  throw ecef->error("a point not on the Earth", "x, y, z in m, ECEF",
+                    on_earth(1e3 * r_e.norm()) ? "Kilometres?"
+                    : degrees                  ? "Degrees? Then it is geodetic_deg_m: [latitude, longitude, height]."
+                                               : "");
 }
 
 double epoch_of(const Node& node) {
@@ -73,6 +84,8 @@ carrier::BaseAt base_position(const Node& map) {
   using carrier::BaseAt;
   constexpr std::array kHows{BaseAt::How::kHeader, BaseAt::How::kAverage, BaseAt::How::kMoving};
   const auto node = map.find("base_position");
+  if (node && node->is_list())
+    throw node->error("a list", "{ecef_m: [x, y, z]}, {geodetic_deg_m: [latitude, longitude, height]}, or header");
   if (!node || !node->is_map()) {
     const BaseAt::How how = kHows[map.choice("base_position", {"header", "average", "moving"}, 0)];
     return {node ? how : BaseAt::How::kUnstated, {}, {}};

@@ -2,10 +2,12 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <memory>
 
 #include "coast/io/products.hpp"
 #include "coast/io/rinex.hpp"
+#include "coast/record/error.hpp"
 
 namespace coast::cli {
 
@@ -51,6 +53,19 @@ void add_antennas(const record::AntennaTable& table, const ObservationRecording&
        std::nullopt, 1});
 }
 
+/// Orbits of another day would make of everything else that it fails.
+void require_orbits(const ObservationRecording& rover, const carrier::Orbits& orbits, const std::string& source, bool precise) {
+  constexpr std::size_t kEpochs = 10;
+  const std::size_t step = std::max<std::size_t>(1, rover.epochs.size() / kEpochs);
+  for (std::size_t i = 0; i < rover.epochs.size(); i += step)
+    for (const record::Observation& o : rover.epochs[i].observations)
+      if (orbits.at(o.satellite, rover.epochs[i].t)) return;
+  throw InputError({source, 0,
+                    fmt::format("no orbit of a satellite of {} at {}", rover.source, geo::to_string(rover.epochs.front().t)),
+                    precise ? "orbits of the same hours" : "ephemerides of the same hours",
+                    precise ? "Give the SP3 files of the same day." : "Give the navigation file of the same day."});
+}
+
 std::string in_words(const ObservationRecording& receiver) {
   return fmt::format("{} ({}{}{})", receiver.marker.empty() ? "unnamed" : receiver.marker,
                      receiver.receiver.empty() ? "receiver not stated" : receiver.receiver,
@@ -63,6 +78,9 @@ PpkResult run_ppk(const PpkConfig& config, const std::function<void(double)>& pr
   PpkResult result;
   ObservationRecording rover = io::read_observations(config.rover);
   ObservationRecording base = io::read_observations(config.base);
+  if (carrier::same_observations(rover, base))
+    throw InputError({base.source, 0, "the observations of the rover", "those of another receiver",
+                      fmt::format("`rover` is {}: one of the two is not the file that was meant.", rover.source)});
   const record::NavigationRecording navigation = io::read_navigation(config.navigation);
   add_channels(navigation, rover);
   add_channels(navigation, base);
@@ -73,6 +91,7 @@ PpkResult run_ppk(const PpkConfig& config, const std::function<void(double)>& pr
   std::optional<carrier::PhaseCentredOrbits> centred;
   if (precise) centred.emplace(*precise, antennas);
   const carrier::Orbits& orbits = centred ? static_cast<const carrier::Orbits&>(*centred) : broadcast;
+  require_orbits(rover, orbits, centred ? config.sp3.front().string() : navigation.source, centred.has_value());
   carrier::PpkOptions options = config.options;
   if (config.broadcast_ionosphere) options.differences.air.ionosphere = navigation.gps_ionosphere;
   result.rover = in_words(rover);
@@ -81,6 +100,8 @@ PpkResult run_ppk(const PpkConfig& config, const std::function<void(double)>& pr
   result.r_base_e = known.r_e;
   result.base_from = known.from;
   append(carrier::examine_base(config.base_at, known, base, orbits, options.differences), result.events);
+  if (options.motion == carrier::RoverMotion::kStatic)
+    append(carrier::examine_static_rover(rover, orbits, options.differences), result.events);
   if (config.antex) add_antennas(antennas, rover, base, options.differences, result.events);
   result.solution = carrier::solve_ppk(rover, base, orbits, known.at, options, progress);
   result.options = std::move(options);

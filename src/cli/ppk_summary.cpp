@@ -145,7 +145,9 @@ std::string ppk_json(const PpkConfig& config, const PpkResult& result) {
 std::vector<std::string> ppk_sentences(const PpkResult& result) {
   const PpkSummary s = summary_of(result);
   std::vector<std::string> sentences{
-      fmt::format("GNSS: baseline {:.0f} m, {}", s.baseline_m, signals_in_words(result.solution.signals)),
+      s.fixed + s.floats > 0
+          ? fmt::format("GNSS: baseline {:.0f} m, {}", s.baseline_m, signals_in_words(result.solution.signals))
+          : fmt::format("GNSS: {}", signals_in_words(result.solution.signals)),
       fmt::format("GNSS: {} of {} epochs fixed ({} %), {} float, {} single, {} without position", s.fixed, s.expected,
                   percent(s.fix_rate()), s.floats, s.single, s.none)};
   for (const auto& [cause, epochs] : s.causes())

@@ -439,15 +439,6 @@ void leave_time_to_the_filter(const RunConfig& config, Recordings& recordings, s
   });
 }
 
-// Nothing sensible follows where gravity points the wrong way at rest.
-void refuse_hopeless(const RunConfig& config, const Recordings& recordings) {
-  if (config.accept) return;
-  for (const record::Event& event : recordings.inspection_events)
-    if (event.kind == "gravity_sign" || event.kind == "gravity_axis" || (event.kind == "gyro_sign" && !config.tight))
-      throw NumericalError("the axes contradict gravity or the course", "",
-                           event.text + " (`accept: true` processes it all the same)");
-}
-
 // Where no start is found, a mistake that would explain it is told beside the reason.
 std::unique_ptr<ProcessRun> prepare(const RunConfig& config, Recordings recordings, study::Setup setup,
                                     const study::Excerpt& excerpt, const std::filesystem::path& out,
@@ -479,7 +470,7 @@ void process(const std::filesystem::path& run_yaml, const CommonOptions& options
   setup.unstated = config.setup.unstated;
   leave_time_to_the_filter(config, recordings, setup);
   print_inspection(recordings, options.quiet);
-  refuse_hopeless(config, recordings);
+  refuse_wrong_axes(config, recordings);
   take_out_effects(config, recordings, setup, progress);
   const study::Excerpt excerpt = study::excerpt_of(recordings.imu, recordings.gnss);
   const std::unique_ptr<ProcessRun> prepared = prepare(config, std::move(recordings), std::move(setup), excerpt, out, progress);

@@ -210,8 +210,9 @@ void add_lever_arm(const ProcessResult& result, std::vector<Check>& checks) {
 
 // Mistakes in the order in which each hides the ones behind it.
 std::string likely_cause(const ProcessResult& result) {
-  for (const char* kind : {"specific_force_size", "gravity_sign", "gravity_axis", "gyro_sign", "gyro_unit", "leap_second_shift",
-                           "time_shift", "lever_arm_contradicted", "travel_direction", "gnss_sigmas_do_not_fit"})
+  for (const char* kind :
+       {"specific_force_unit", "specific_force_size", "gravity_sign", "gravity_axis", "gyro_sign", "gyro_unit",
+        "leap_second_shift", "time_shift", "lever_arm_contradicted", "travel_direction", "gnss_sigmas_do_not_fit"})
     if (const record::Event* event = find(result.events, kind)) return event->text;
   return "";
 }

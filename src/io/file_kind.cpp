@@ -37,18 +37,21 @@ std::optional<FileKind> binary_kind(std::string_view head) {
   if (head.starts_with("PK\x03\x04")) return FileKind{"a zip archive", "Unpack it and name the file inside."};
   if (head.size() > 262 && head.substr(257, 5) == "ustar")
     return FileKind{"a tar archive", "Unpack it and name the file inside."};
-  if (head.starts_with("\xb5\x62"))
+  if (head.find("\xb5\x62") != std::string_view::npos)  // NMEA sentences may stand between its messages
     return FileKind{"a UBX file of a u-blox receiver",
                     "Convert it: to RINEX for `gnss: {ppk: ..}`, e.g. with convbin of RTKLIB, or to a table of positions."};
   return std::nullopt;
 }
 
 std::optional<FileKind> line_kind(std::string_view line) {
-  if (is_nmea(line)) return FileKind{"an NMEA file", "Convert it to a table of positions, or to .pos of RTKLIB."};
+  if (is_nmea(line)) return FileKind{"an NMEA file of positions", "Convert it to a table of positions, or to .pos of RTKLIB."};
   const std::string_view label = line.size() > 60 ? trimmed(line.substr(60)) : std::string_view();
   if (label == "RINEX VERSION / TYPE" || label == "CRINEX VERS   / TYPE")
-    return FileKind{"a RINEX file", "Observations become positions under `gnss: {ppk: {rover: .., base: .., nav: [..]}}`."};
-  if (is_sp3(line)) return FileKind{"an SP3 file of precise orbits", ""};
+    return FileKind{"a RINEX file", "Observations become positions under `gnss: {ppk: {rover: .., base: .., nav: [..]}}`.",
+                    Content::kRinex};
+  if (is_sp3(line))
+    return FileKind{"an SP3 file of precise orbits", "It belongs under `sp3`, beside `nav`, where RINEX becomes positions.",
+                    Content::kOrbits};
   if (line.starts_with("% program") || line.starts_with("%  GPST") || line.starts_with("%  UTC"))
     return FileKind{"a .pos file of RTKLIB", "It belongs under `gnss: {file: .., format: rtklib-pos}`.", Content::kPositions};
   // A header; configurations name the column too, with signs of YAML about it.

@@ -152,7 +152,7 @@ bool check_force(const record::ImuRecording& imu, const RestForce& rest, double 
       rest.seen ? fmt::format("At rest ({:.0f} s)", rest.seconds) : "No standstill seen; quietest seconds", rest.force.x(),
       rest.force.y(), rest.force.z(), norm, gravity, 100.0 * (norm / gravity - 1.0));
   if (norm < 0.7 * gravity || norm > 1.4 * gravity) {
-    warn(result, "specific_force_size", text + size_hint(norm / gravity, imu.rate_hz));
+    warn(result, "specific_force_unit", text + size_hint(norm / gravity, imu.rate_hz));
     return false;
   }
   result.sentences.push_back(text);

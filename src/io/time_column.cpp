@@ -137,8 +137,11 @@ TimeColumn::TimeColumn(TableReader& table, const TimeOptions& options, const std
         return table.error(found, expected, what_to_do);
       }) {
   if (options.lacks_week() && !near)
-    throw InputError({table.name(), 0, "seconds of week without a GPS week", "",
-                      "State `gps_week:` beside the file, or give a partner file whose times carry a date."});
+    throw InputError(
+        {table.name(), 0, "seconds of week without a GPS week", "",
+         options.kind == TimeKind::kSecondsOfWeek
+             ? "State `gps_week:` beside the file, or give a partner file whose times carry a date."
+             : "State `gps_week:` beside the file, any week where the true one is not known: times count from its begin."});
   const bool calendar = is_calendar(options.kind);
   const std::size_t least = options.kind == TimeKind::kRow ? 0 : options.kind == TimeKind::kWeekAndSeconds ? 2 : 1;
   const std::size_t most = calendar ? 2 : least;

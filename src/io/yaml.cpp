@@ -188,7 +188,7 @@ config::Node load_yaml(const std::filesystem::path& path) {
   }
   text.resize(size);
   // Some files of other kinds read as YAML, RINEX for one.
-  if (const auto kind = file_kind(std::string_view(text).substr(0, 4096)); kind && kind->content == FileKind::Content::kOther)
+  if (const auto kind = file_kind(std::string_view(text).substr(0, 4096)); kind && is_no_table(kind->content))
     refuse_other_kind(path, FileKind::Content::kYaml, "a configuration file");
   try {
     return parse_yaml(text, path.string());

@@ -194,7 +194,7 @@ INSTANTIATE_TEST_SUITE_P(
         SpoiledPpk{"a base in space", "header", "{ecef_m: [1, 2, 3]}", "not on the Earth"},
         SpoiledPpk{"a base of the other hemisphere", "header", "{geodetic_deg_m: [-46.547, 6.583, 400]}",
                    "of z changed it fits: a sign?"},
-        SpoiledPpk{"rover for base", "base.obs", "rover.obs", "Are rover and base exchanged?"},
+        SpoiledPpk{"rover for base", "base.obs", "rover.obs", "the observations of the rover"},
         SpoiledPpk{"a base of two numbers", "header", "{ecef_m: [1, 2]}", "ecef_m"},
         SpoiledPpk{"a frame that nobody knows", "header", "{ecef_m: [4365683, 503817, 4607565], frame: ITRF1800, epoch: 2020}",
                    "one of"},

@@ -144,10 +144,10 @@ TEST(Inspect, UnitsAndSignsOfGyroAndAccelerometer) {
   };
   EXPECT_NE(text_of(look(1.0 / geo::kDegree, 1.0), "gyro_unit"), "");
   EXPECT_NE(text_of(look(-1.0, 1.0), "gyro_sign"), "");
-  EXPECT_NE(text_of(look(1.0, 1.0 / geo::kStandardGravity), "specific_force_size").find("units: {accel: g}"),
+  EXPECT_NE(text_of(look(1.0, 1.0 / geo::kStandardGravity), "specific_force_unit").find("units: {accel: g}"),
             std::string::npos);
-  EXPECT_NE(text_of(look(1.0, 0.01), "specific_force_size").find("values: increments"), std::string::npos);
-  EXPECT_NE(text_of(look(1.0, 100.0), "specific_force_size").find("values: rates"), std::string::npos);
+  EXPECT_NE(text_of(look(1.0, 0.01), "specific_force_unit").find("values: increments"), std::string::npos);
+  EXPECT_NE(text_of(look(1.0, 100.0), "specific_force_unit").find("values: rates"), std::string::npos);
   EXPECT_NE(text_of(look(1.0, 1.03), "specific_force_size"), "");
   EXPECT_EQ(text_of(look(1.0, 1.01), "specific_force_size"), "");
 }

@@ -40,9 +40,20 @@ struct KnownBase {
 /// its ionosphere is not modelled. Nothing is examined of a moving base, nor where fewer than five epochs have a position.
 /// @return warnings: `base_position_doubtful`, further off than 10 m and 5 sigma, of a header's position than 3 m and 2 sigma,
 ///         and of a header's that nobody stated in any case; `base_moves`, positions that spread by more than 30 m and 5 sigma
-/// @throws InputError  a position more than 10 km off; positions that spread by more than 50 m and 5 sigma
+/// @throws InputError  a position more than 10 km off; positions that spread by more than 50 m and 5 sigma; an antenna more
+/// than
+///                     50 m from its marker
 [[nodiscard]] record::Events examine_base(const BaseAt& base_at, const KnownBase& known,
                                           const record::ObservationRecording& base, const Orbits& orbits,
                                           const DifferenceOptions& options);
+
+/// A rover that is said to be at rest, against its own codes, as the base in `examine_base`.
+/// @return a warning `rover_moves`
+/// @throws InputError  positions that spread by more than 50 m and 5 sigma
+[[nodiscard]] record::Events examine_static_rover(const record::ObservationRecording& rover, const Orbits& orbits,
+                                                  const DifferenceOptions& options);
+
+/// Whether the first epoch of `a` stands in `b` to the last digit, as it does in no two receivers' files.
+[[nodiscard]] bool same_observations(const record::ObservationRecording& a, const record::ObservationRecording& b);
 
 }  // namespace coast::carrier

@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 
+#include "../file_kind.hpp"
 #include "../rinex_lines.hpp"
 #include "../text.hpp"
 #include "coast/geo/units.hpp"
@@ -157,7 +158,7 @@ class AntexReader {
 }  // namespace
 
 record::AntennaTable read_antex(const std::filesystem::path& file) {
-  return AntexReader(file).read();
+  return read_as(file, FileKind::Content::kOther, "an ANTEX file of antennas", [&] { return AntexReader(file).read(); });
 }
 
 }  // namespace coast::io

@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 
+#include "../file_kind.hpp"
 #include "../rinex_lines.hpp"
 #include "../text.hpp"
 #include "coast/io/products.hpp"
@@ -91,7 +92,7 @@ class ClockReader {
 record::PreciseClocks read_clocks(const std::vector<std::filesystem::path>& files) {
   record::PreciseClocks clocks;
   for (const auto& file : files) {
-    ClockReader(file, clocks).read();
+    read_as(file, FileKind::Content::kRinex, "RINEX clocks", [&] { ClockReader(file, clocks).read(); });
     clocks.source += (clocks.source.empty() ? "" : ", ") + file.string();
   }
   for (auto& [satellite, points] : clocks.points) {

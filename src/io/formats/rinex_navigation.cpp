@@ -5,6 +5,7 @@
 #include <cmath>
 #include <tuple>
 
+#include "../file_kind.hpp"
 #include "../rinex_lines.hpp"
 #include "../text.hpp"
 #include "coast/io/rinex.hpp"
@@ -321,7 +322,7 @@ void NavigationReader::report() {
 }  // namespace
 
 record::NavigationRecording read_navigation(const std::filesystem::path& file) {
-  return NavigationReader(file).read();
+  return read_as(file, FileKind::Content::kRinex, "RINEX navigation messages", [&] { return NavigationReader(file).read(); });
 }
 
 record::NavigationRecording read_navigation(const std::vector<std::filesystem::path>& files) {

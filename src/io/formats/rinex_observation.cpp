@@ -5,6 +5,7 @@
 #include <cmath>
 #include <map>
 
+#include "../file_kind.hpp"
 #include "../rinex_lines.hpp"
 #include "../text.hpp"
 #include "coast/io/rinex.hpp"
@@ -494,7 +495,7 @@ void ObservationReader::report() {
 }  // namespace
 
 record::ObservationRecording read_observations(const std::filesystem::path& file) {
-  return ObservationReader(file).read();
+  return read_as(file, FileKind::Content::kRinex, "RINEX observations", [&] { return ObservationReader(file).read(); });
 }
 
 }  // namespace coast::io

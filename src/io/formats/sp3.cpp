@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "../file_kind.hpp"
 #include "../rinex_lines.hpp"
 #include "../text.hpp"
 #include "coast/io/products.hpp"
@@ -97,7 +98,7 @@ class Sp3Reader {
 record::PreciseOrbits read_sp3(const std::vector<std::filesystem::path>& files) {
   record::PreciseOrbits orbits;
   for (const auto& file : files) {
-    Sp3Reader(file, orbits).read();
+    read_as(file, FileKind::Content::kOrbits, "an SP3 file of precise orbits", [&] { Sp3Reader(file, orbits).read(); });
     orbits.source += (orbits.source.empty() ? "" : ", ") + file.string();
   }
   for (auto& [satellite, points] : orbits.points) {
