@@ -46,8 +46,8 @@ Eigen::Vector3d given_position(const Node& node) {
       throw geodetic.error("x, y, z in m, ECEF", "[latitude_deg, longitude_deg, height_m]", "Give them as ecef_m.");
     return geo::ecef_from_geodetic(geodetic_from(geodetic));
   }
+  if (on_earth(ecef->vector3().norm())) return ecef->vector3();
   const Eigen::Vector3d r_e = ecef->vector3();
-  if (on_earth(r_e.norm())) return r_e;
   const bool degrees = std::abs(r_e.x()) <= 90.0 && std::abs(r_e.y()) <= 360.0;
   throw ecef->error("a point not on the Earth", "x, y, z in m, ECEF",
                     on_earth(1e3 * r_e.norm()) ? "Kilometres?"
