@@ -60,7 +60,7 @@ int shell(const fs::path& folder, const std::string& command) {
 
 /// RINEX of a car and a base station, unpacked.
 fs::path rinex_of(const fs::path& data, const fs::path& folder) {
-  const fs::path place = folder / "rinex";
+  fs::path place = folder / "rinex";
   fs::create_directory(place);
   const fs::path from = data / "rinex-kinematic-2021-265";
   EXPECT_EQ(shell(place, fmt::format("gzip -dc '{0}/SEPT265G.21O.gz' >rover.obs && gzip -dc '{0}/3034265G.21O.gz' >base.obs && "
