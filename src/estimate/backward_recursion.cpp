@@ -21,8 +21,9 @@ Eigen::VectorXd sigmas(const Eigen::MatrixXd& P) {
 
 }  // namespace
 
-BackwardRecursion::BackwardRecursion(const StateLayout& layout)
+BackwardRecursion::BackwardRecursion(const StateLayout& layout, Carries carries)
     : layout_(layout),
+      carries_(carries),
       blocks_(layout),
       r_(Eigen::VectorXd::Zero(layout.size())),
       N_(Eigen::MatrixXd::Zero(layout.size(), layout.size())) {}
@@ -66,6 +67,7 @@ void BackwardRecursion::through_transition(const Knot& knot) {
   r_.setZero();
   r_.tail(rest) = r_rest;
   r_.head(ns) += through_nav;
+  if (carries_ == Carries::kVector) return;
 
   times_phi(knot);  // N Phi
   N_.transposeInPlace();
@@ -76,6 +78,7 @@ void BackwardRecursion::through_transition(const Knot& knot) {
 void BackwardRecursion::through_update(const AppliedUpdate& u) {
   const Eigen::VectorXd gained = u.K.transpose() * r_;
   r_.noalias() += u.H.transpose() * (u.S_inv * u.y - gained);
+  if (carries_ == Carries::kVector) return;
   // (I - K H)' N (I - K H) + H' S^-1 H, one factor after the other: where a fix ends a long outage I - K H is small, and
   // multiplied out the product would be the difference of terms 1e8 times as large.
   const Eigen::MatrixXd NK = N_ * u.K;
@@ -94,22 +97,28 @@ void BackwardRecursion::through_updates(const Knot& knot) {
 void BackwardRecursion::through_slot_changes(const Eigen::VectorXd& factors) {
   const auto slots = factors.size();
   r_.tail(slots).array() *= factors.array();
+  if (carries_ == Carries::kVector) return;
   N_.bottomRows(slots).array().colwise() *= factors.array();
   N_.rightCols(slots).array().rowwise() *= factors.transpose().array();
 }
 
-SmoothedKnot BackwardRecursion::smoothed(const Knot& knot, bool with_states) const {
+SmoothedKnot BackwardRecursion::smoothed_state(const Knot& knot) const {
   SmoothedKnot s;
   s.nav = knot.post.nav;
-  Eigen::VectorXd x = knot.post.x;
+  s.x = knot.post.x;
+  remove_error(knot.P_post * r_, s.nav, s.x);
+  return s;
+}
+
+SmoothedKnot BackwardRecursion::smoothed(const Knot& knot, bool with_states) const {
+  SmoothedKnot s = smoothed_state(knot);
   const Eigen::MatrixXd& P = knot.P_post;
-  remove_error(P * r_, s.nav, x);
   if (with_states) {
     const Eigen::MatrixXd PN = P * N_;
-    s.x = x;
     s.sd = (P.diagonal() - PN.cwiseProduct(P).rowwise().sum()).cwiseMax(0.0).cwiseSqrt();
     s.cov = covariance_of(PN.topRows<kNav>(), knot);
   } else {
+    s.x.resize(0);
     s.cov = covariance_of(P.topRows<kNav>() * N_, knot);
   }
   return s;

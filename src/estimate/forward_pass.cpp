@@ -135,12 +135,17 @@ void ForwardPass::close_interval() {
   state_.nav = propagation_.navigator().nav();
   state_.x = propagation_.navigator().x();
   check_finite();
-  if (outputs_.knots != nullptr && have_knot_) {
+  if (keeps_knots() && have_knot_) {
     knot_.interval = propagation_.elapsed();
     knot_.Phi_n = propagation_.Phi_n();
-    outputs_.knots->append(knot_);
+    deliver_knot();
   }
   if (outputs_.epochs) emit_epochs(nav_covariance_n(state_.P.topLeftCorner<kNav, kNav>(), state_.nav.r_eb_e));
+}
+
+void ForwardPass::deliver_knot() {
+  if (outputs_.knots != nullptr) outputs_.knots->append(knot_);
+  if (outputs_.closed_knots) outputs_.closed_knots(knot_, propagation_.white_noise());
 }
 
 void ForwardPass::knot() {
@@ -160,7 +165,7 @@ void ForwardPass::knot() {
   vehicle_updates();
   propagation_.correct(state_.nav, state_.x);
   if (outputs_.epochs) cov_at_start_ = nav_covariance_n(state_.P.topLeftCorner<kNav, kNav>(), state_.nav.r_eb_e);
-  if (outputs_.knots == nullptr) return;
+  if (!keeps_knots()) return;
   knot_.post = {state_.nav, state_.x, propagation_.navigator().previous()};
   knot_.P_post = state_.P;
   knot_.next_sample = cursor_.next_sample;
@@ -171,7 +176,7 @@ void ForwardPass::knot() {
 
 FilterResult ForwardPass::finish() {
   if (propagation_.elapsed() > 0.0 || !buffer_.empty()) knot();
-  if (outputs_.knots != nullptr) outputs_.knots->append(knot_);
+  if (keeps_knots()) deliver_knot();
   if (outputs_.progress) outputs_.progress(1.0);
   note_refused_members();
   result_.last = state_;
@@ -283,7 +288,7 @@ std::optional<bool> ForwardPass::try_update(const Measurement& what, record::Fix
   if (!used) return false;
   result_.log_likelihood += step.log_likelihood;
   AppliedUpdate applied = apply(*measurement, step, state_);
-  if (outputs_.knots != nullptr) knot_.updates.push_back(std::move(applied));
+  if (keeps_knots()) knot_.updates.push_back(std::move(applied));
   return true;
 }
 

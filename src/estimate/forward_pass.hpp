@@ -44,6 +44,9 @@ class ForwardPass {
   void admit_doubt(const Eigen::Vector3d& nu);
   void record_innovation(const Linearised& measurement, const Innovation& innovation, bool used, record::FixQuality quality);
   void emit_epochs(const record::NavCovariance& at_end);
+  /// Hands the last knot, complete now, to those who want it.
+  void deliver_knot();
+  [[nodiscard]] bool keeps_knots() const { return outputs_.knots != nullptr || outputs_.closed_knots; }
   void check_finite() const;
   [[nodiscard]] UpdateContext context() const;
 

@@ -70,6 +70,7 @@ class Propagation {
   void correct(const record::NavState& nav, const Eigen::VectorXd& x);
   /// Of the interval at hand, or of the one that was closed, until the next begins.
   [[nodiscard]] const NavRows& Phi_n() const { return transition_.Phi_n(); }
+  [[nodiscard]] WhiteNoise white_noise() const { return transition_.white_noise(); }
   [[nodiscard]] double elapsed() const { return transition_.elapsed(); }
   [[nodiscard]] const Navigator& navigator() const { return navigator_; }
 

@@ -32,6 +32,20 @@ std::vector<SmoothedKnot> smooth(const KnotStore& knots, const StateLayout& layo
   return smoothed;
 }
 
+SmoothedKnot smooth_first(const KnotStore& knots, const StateLayout& layout) {
+  BackwardRecursion backward(layout, BackwardRecursion::Carries::kVector);
+  Knot knot;
+  for (std::size_t i = knots.size(); i-- > 0;) {
+    knot = knots.at(i);
+    if (i + 1 < knots.size()) backward.through_transition(knot);
+    if (i > 0) backward.through_updates(knot);
+  }
+  const SmoothedKnot first = backward.smoothed_state(knot);
+  if (!first.nav.r_eb_e.allFinite())
+    throw NumericalError("smoothed state is not finite", geo::to_string(knot.post.nav.t), "the forward filter has diverged");
+  return first;
+}
+
 std::vector<Future> futures(const KnotStore& knots, const StateLayout& layout, std::span<const std::size_t> at) {
   std::vector<Future> result(at.size());
   BackwardRecursion backward(layout);

@@ -117,7 +117,6 @@ int StateLayout::add_auxiliary(const std::string& name, double sigma, double bet
     block.name = count > 1 ? fmt::format("{}_{}", name, i) : name;
     auxiliaries_.push_back(std::move(block));
   }
-  if (beta > 0.0) shortest_time_ = std::min(shortest_time_, 1.0 / beta);
   return first;
 }
 

@@ -36,6 +36,7 @@ void TransitionAccumulator::reset() {
   Phi_n_.setZero();
   Phi_n_.leftCols<kNav>().setIdentity();
   Q_n_.setZero();
+  Q_gyro_.setZero();
   for (const auto& block : layout_.sensors()) output_.segment(block.offset - kNav, block.size) = block.output;
   elapsed_ = 0.0;
   clear_pending();
@@ -92,22 +93,28 @@ void TransitionAccumulator::add_white_noise() {
   const Eigen::Matrix3d q_g = h * (C * gyro_density_b_ * C.transpose());
   const Eigen::Matrix3d A = geo::skew(fold_.sum_f);
   const Eigen::Matrix3d v_psi = -0.5 * (A * q_g);
+  const Eigen::Matrix3d v_v = (A * q_g * A.transpose()) / 3.0;
   Q_n_.block<3, 3>(kPos, kPos) += (h * h / 3.0) * q_a;
   Q_n_.block<3, 3>(kPos, kVel) += (h / 2.0) * q_a;
   Q_n_.block<3, 3>(kVel, kPos) += (h / 2.0) * q_a;
-  Q_n_.block<3, 3>(kVel, kVel) += q_a + (A * q_g * A.transpose()) / 3.0;
-  Q_n_.block<3, 3>(kVel, kPsi) += v_psi;
-  Q_n_.block<3, 3>(kPsi, kVel) += v_psi.transpose();
-  Q_n_.block<3, 3>(kPsi, kPsi) += q_g;
+  Q_n_.block<3, 3>(kVel, kVel) += q_a + v_v;
+  Q_gyro_.block<3, 3>(kVel, kVel) += v_v;
+  for (NavCov* Q : {&Q_n_, &Q_gyro_}) {
+    Q->block<3, 3>(kVel, kPsi) += v_psi;
+    Q->block<3, 3>(kPsi, kVel) += v_psi.transpose();
+    Q->block<3, 3>(kPsi, kPsi) += q_g;
+  }
 }
 
 void TransitionAccumulator::fold(const Eigen::Matrix3d& gravity_gradient) {
   if (!(fold_.h > 0.0)) return;
   fold_.advance(Phi_n_, gravity_gradient, earth_rate_);
   add_sensor_columns();
-  fold_.advance(Q_n_, gravity_gradient, earth_rate_);
-  Q_n_.transposeInPlace();
-  fold_.advance(Q_n_, gravity_gradient, earth_rate_);
+  for (NavCov* Q : {&Q_n_, &Q_gyro_}) {
+    fold_.advance(*Q, gravity_gradient, earth_rate_);
+    Q->transposeInPlace();
+    fold_.advance(*Q, gravity_gradient, earth_rate_);
+  }
   add_white_noise();
   elapsed_ += fold_.h;
   clear_pending();

@@ -242,7 +242,7 @@ void PreparedMission::refine_start(const Progress& progress) {
     estimate::FilterOutputs outputs;
     outputs.knots = &first;
     static_cast<void>(first_minutes(setup_.filter, outputs));
-    const estimate::SmoothedKnot knot = estimate::smooth(first, filter.layout()).front();
+    const estimate::SmoothedKnot knot = estimate::smooth_first(first, filter.layout());
     const auto change = estimate::error_between(knot.nav, start_.nav);
     start_.nav = knot.nav;
     start_sensor_errors_ = knot.x.head(filter.layout().sensor_end());

@@ -8,6 +8,7 @@
 #include "coast/estimate/carrier_observations.hpp"
 #include "coast/estimate/knot.hpp"
 #include "coast/estimate/state_layout.hpp"
+#include "coast/estimate/transition.hpp"
 #include "coast/estimate/update.hpp"
 #include "coast/record/event.hpp"
 #include "coast/record/gnss.hpp"
@@ -118,6 +119,8 @@ struct FilterResult {
 /// Where a pass delivers; every member may be empty.
 struct FilterOutputs {
   KnotStore* knots = nullptr;
+  /// What `knots` keeps, one at a time, with the white noise of its interval; called at the knot that ends it.
+  std::function<void(const Knot&, const WhiteNoise&)> closed_knots = {};
   record::EpochSink epochs;                          ///< filtered state at IMU epochs
   std::function<void(const FilterState&)> at_knots;  ///< before the knot's updates
   /// Every measurement, and whether it was used, at the knot that comes next. Not of carrier phases.

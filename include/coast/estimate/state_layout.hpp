@@ -80,7 +80,8 @@ class StateLayout {
   /// White-noise densities in body axes, [signal]^2/Hz.
   [[nodiscard]] const Eigen::Matrix3d& gyro_density_b() const { return gyro_density_b_; }
   [[nodiscard]] const Eigen::Matrix3d& accel_density_b() const { return accel_density_b_; }
-  /// Shortest correlation time of any state, s; infinity where all are constant.
+  /// Shortest correlation time of any sensor state, s; infinity where all are constant. Auxiliary states are exact over any
+  /// interval.
   [[nodiscard]] double shortest_time() const { return shortest_time_; }
 
   /// Covariance of the non-navigation states at the start (size x size, navigation rows zero).

@@ -13,6 +13,12 @@ namespace coast::estimate {
 using NavRows = Eigen::Matrix<double, kNav, Eigen::Dynamic, Eigen::RowMajor>;
 using NavCov = Eigen::Matrix<double, kNav, kNav, Eigen::RowMajor>;
 
+/// Covariance that white noise brings into the navigation states over an interval, each sensor's own.
+struct WhiteNoise {
+  NavCov gyro;
+  NavCov accel;
+};
+
 /// What one IMU sample contributes; the strapdown has it at hand.
 struct SampleDynamics {
   double dt = 0.0;
@@ -75,10 +81,17 @@ class TransitionAccumulator {
   void fold(const Eigen::Matrix3d& gravity_gradient);
 
   /// Three navigation states are found anew at the end of the interval: nothing of it reaches them.
-  void forget(int first_state) { Phi_n_.middleRows<3>(first_state).setZero(); }
+  void forget(int first_state) {
+    Phi_n_.middleRows<3>(first_state).setZero();
+    for (NavCov* Q : {&Q_n_, &Q_gyro_}) {
+      Q->middleRows<3>(first_state).setZero();
+      Q->middleCols<3>(first_state).setZero();
+    }
+  }
 
   [[nodiscard]] const NavRows& Phi_n() const { return Phi_n_; }
   [[nodiscard]] const NavCov& Q_n() const { return Q_n_; }
+  [[nodiscard]] WhiteNoise white_noise() const { return {Q_gyro_, Q_n_ - Q_gyro_}; }
   [[nodiscard]] double elapsed() const { return elapsed_; }
 
   /// P <- Phi P Phi' + Q over what has been folded since reset(), every block of states included. Driving noise of sensor
@@ -97,6 +110,7 @@ class TransitionAccumulator {
   Eigen::Matrix3d gyro_density_b_, accel_density_b_;
   NavRows Phi_n_;
   NavCov Q_n_;
+  NavCov Q_gyro_;  ///< the gyros' part of it
   int gyro_states_ = 0;
   Eigen::RowVectorXd output_;  ///< h Phi(elapsed) of every sensor state: what a unit of it at the knot does now
   Eigen::RowVectorXd middle_;  ///< the same in the middle of the fold

@@ -1,0 +1,64 @@
+#include "noise_objective.hpp"
+
+#include <cmath>
+#include <limits>
+
+#include "coast/record/error.hpp"
+
+namespace coast::estimate {
+
+NoiseObjective::NoiseObjective(const Mission& mission, const noise::ImuErrorModel& model, const FilterOptions& options,
+                               const std::vector<NoiseParameter>& parameters, const NoiseAdjustment& fixed, const Start& start)
+    : mission_(mission), model_(model), options_(options), parameters_(parameters), fixed_(fixed), start_(start) {
+  options_.gate_probability = 0.0;
+}
+
+NoiseAdjustment NoiseObjective::at(const Eigen::VectorXd& theta) const {
+  NoiseAdjustment adjustment = fixed_;
+  for (std::size_t i = 0; i < parameters_.size(); ++i)
+    parameters_[i].value(adjustment) = std::exp(theta(static_cast<Eigen::Index>(i)));
+  return adjustment;
+}
+
+double NoiseObjective::value(const Eigen::VectorXd& theta) {
+  ++passes_;
+  theta_ = theta;
+  filter_.emplace(filter_at(at(theta)));
+  try {
+    return pass_.run(*filter_, start_(*filter_)).log_likelihood;
+  } catch (const NumericalError&) {
+    return -std::numeric_limits<double>::infinity();
+  }
+}
+
+NoiseScores NoiseObjective::scores() const {
+  NoiseModel model{mission_, filter_->layout(), at(theta_), parameters_, {}};
+  for (Eigen::Index i = 0; i < theta_.size(); ++i) model.start.push_back(start_slope(i));
+  return noise_scores(pass_, model);
+}
+
+FilterResult NoiseObjective::run(const NoiseAdjustment& adjustment) const {
+  ++passes_;
+  const ForwardFilter filter = filter_at(adjustment);
+  return filter.run(start_(filter), {});
+}
+
+ForwardFilter NoiseObjective::filter_at(const NoiseAdjustment& adjustment) const {
+  return ForwardFilter(mission_, adjusted(model_, adjustment), adjusted(options_, adjustment));
+}
+
+// No pass is needed for it.
+StartSlope NoiseObjective::start_slope(Eigen::Index parameter) const {
+  constexpr double kStep = 1e-4;  // its square is the error, relative
+  const auto start_at = [&](double step) {
+    Eigen::VectorXd theta = theta_;
+    theta(parameter) += step;
+    return start_(filter_at(at(theta)));
+  };
+  const FilterState above = start_at(kStep), below = start_at(-kStep);
+  StartSlope slope{(above.x - below.x) / (2.0 * kStep), (above.P - below.P) / (2.0 * kStep)};
+  slope.estimate.head<kNav>() = error_between(above.nav, below.nav) / (2.0 * kStep);
+  return slope;
+}
+
+}  // namespace coast::estimate

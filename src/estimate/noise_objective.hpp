@@ -1,0 +1,48 @@
+#pragma once
+// The likelihood that the noise is fitted by; private to the room.
+
+#include <atomic>
+#include <functional>
+#include <optional>
+
+#include "noise_scores.hpp"
+
+namespace coast::estimate {
+
+/// The filter's log-likelihood with an open gate, as a function of the logarithms of the free parameters.
+class NoiseObjective {
+ public:
+  using Start = std::function<FilterState(const ForwardFilter&)>;
+
+  /// Everything that is referred to must outlive it.
+  /// @param fixed  what the parameters that are not free keep
+  NoiseObjective(const Mission& mission, const noise::ImuErrorModel& model, const FilterOptions& options,
+                 const std::vector<NoiseParameter>& parameters, const NoiseAdjustment& fixed, const Start& start);
+
+  [[nodiscard]] NoiseAdjustment at(const Eigen::VectorXd& theta) const;
+  /// A pass, which is kept; minus infinity where the filter breaks: worse than any other set, not an error.
+  [[nodiscard]] double value(const Eigen::VectorXd& theta);
+  /// Where value() was asked for last.
+  [[nodiscard]] NoiseScores scores() const;
+  /// A pass beside it, of which nothing is kept. @throws NumericalError  the filter breaks
+  [[nodiscard]] FilterResult run(const NoiseAdjustment& adjustment) const;
+  [[nodiscard]] int passes() const { return passes_; }
+
+ private:
+  [[nodiscard]] ForwardFilter filter_at(const NoiseAdjustment& adjustment) const;
+  [[nodiscard]] StartSlope start_slope(Eigen::Index parameter) const;
+
+  const Mission& mission_;
+  const noise::ImuErrorModel& model_;
+  FilterOptions options_;
+  const std::vector<NoiseParameter>& parameters_;
+  NoiseAdjustment fixed_;
+  const Start& start_;
+  mutable std::atomic<int> passes_{0};
+  // The last pass.
+  Eigen::VectorXd theta_;
+  std::optional<ForwardFilter> filter_;
+  PassRecord pass_;
+};
+
+}  // namespace coast::estimate

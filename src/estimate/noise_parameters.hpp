@@ -1,0 +1,33 @@
+#pragma once
+// The free parameters of the noise; private to the room.
+
+#include <vector>
+
+#include "coast/estimate/noise_fit.hpp"
+
+namespace coast::estimate {
+
+/// What a parameter acts on.
+enum class NoisePart {
+  kScaleHorizontal,
+  kScaleVertical,
+  kScaleVelocity,
+  kCorrelatedHorizontal,
+  kCorrelatedVertical,
+  kCorrelatedTime,
+  kGyro,
+  kAccel
+};
+
+/// One free parameter: where it lives and its bounds (natural units; searched as a logarithm).
+struct NoiseParameter {
+  NoisePart part;
+  const char* name;
+  double& (*value)(NoiseAdjustment&);
+  double low;
+  double high;
+};
+
+[[nodiscard]] std::vector<NoiseParameter> free_parameters(const NoiseFitChoice& choice, bool velocities);
+
+}  // namespace coast::estimate

@@ -1,0 +1,245 @@
+#include "noise_scores.hpp"
+
+#include <array>
+#include <cmath>
+
+#include "backward_recursion.hpp"
+
+namespace coast::estimate {
+
+namespace {
+
+using Eigen::Index;
+using NavVector = Eigen::Matrix<double, kNav, 1>;
+
+/// Index of each part among the free parameters.
+class Places {
+ public:
+  explicit Places(const std::vector<NoiseParameter>& parameters) {
+    at_.fill(-1);
+    for (std::size_t i = 0; i < parameters.size(); ++i) at_[static_cast<std::size_t>(parameters[i].part)] = static_cast<Index>(i);
+  }
+  [[nodiscard]] Index operator()(NoisePart part) const { return at_[static_cast<std::size_t>(part)]; }
+
+ private:
+  std::array<Index, 8> at_;
+};
+
+constexpr std::array kOfUpdates{NoisePart::kScaleHorizontal, NoisePart::kScaleVertical, NoisePart::kScaleVelocity,
+                                NoisePart::kGyro, NoisePart::kAccel};
+
+/// dR by the logarithm of a parameter; empty where it does not act on the measurement.
+ComponentCov slope_of_R(NoisePart part, const Measurement& what, const AppliedUpdate& update, const Eigen::Matrix3d& C_n_e,
+                        const NoiseModel& model) {
+  const GnssScale& scale = model.adjustment.gnss_scale;
+  const auto rotated = [&](const Eigen::Matrix3d& slope_n) -> ComponentCov { return C_n_e * slope_n * C_n_e.transpose(); };
+  if (what.kind == UpdateKind::kGnssPosition && (part == NoisePart::kScaleHorizontal || part == NoisePart::kScaleVertical)) {
+    const bool horizontal = part == NoisePart::kScaleHorizontal;
+    const Eigen::Vector3d s(scale.horizontal, scale.horizontal, scale.vertical);
+    const Eigen::Vector3d ds = horizontal ? Eigen::Vector3d(s.x(), s.y(), 0.0) : Eigen::Vector3d(0.0, 0.0, s.z());
+    const Eigen::Matrix3d half = ds.asDiagonal() * model.mission.gnss.fixes[what.index].position_cov_n * s.asDiagonal();
+    return rotated(half + half.transpose());
+  }
+  if (what.kind == UpdateKind::kGnssVelocity && part == NoisePart::kScaleVelocity)
+    return rotated(2.0 * scale.velocity * scale.velocity * model.mission.gnss.fixes[what.index].velocity->cov_n);
+  // All white noise of the members is scaled alike.
+  const NoisePart own = what.sensor == noise::Sensor::kGyro ? NoisePart::kGyro : NoisePart::kAccel;
+  if (what.kind == UpdateKind::kMemberDifference && part == own) {
+    const auto m = update.y.size();
+    const ComponentCov S = update.S_inv.llt().solve(ComponentCov::Identity(m, m));
+    const ComponentCov HK = update.H * update.K;
+    return 2.0 * (S - HK * S);
+  }
+  return {};
+}
+
+/// What the backward pass leaves for the forward one.
+struct Disturbances {
+  NavVector gyro, accel;             ///< Q r of the white noise in the interval
+  std::vector<Components> u;         ///< of the updates
+  Eigen::Vector3d gnss;              ///< H' u at the knot, rows of the correlated error
+  Eigen::Vector3d behind, behind_t;  ///< the same of all knots behind it, times exp(-t/tau); times t/tau exp(-t/tau)
+};
+
+class BackwardScores {
+ public:
+  explicit BackwardScores(const NoiseModel& model)
+      : model_(model),
+        place_(model.parameters),
+        recursion_(model.layout),
+        gradient_(Eigen::VectorXd::Zero(static_cast<Index>(model.parameters.size()))) {}
+
+  void through_interval(const RecordedKnot& knot, Disturbances& left) {
+    const Eigen::VectorXd& r = recursion_.r();
+    const auto N = recursion_.N().topLeftCorner<kNav, kNav>();
+    left.gyro.noalias() = knot.white.gyro * r.head<kNav>();
+    left.accel.noalias() = knot.white.accel * r.head<kNav>();
+    add(NoisePart::kGyro, r.head<kNav>().dot(left.gyro) - knot.white.gyro.cwiseProduct(N).sum());
+    add(NoisePart::kAccel, r.head<kNav>().dot(left.accel) - knot.white.accel.cwiseProduct(N).sum());
+    if (!model_.layout.gnss_error()) {
+      recursion_.through_transition(knot.knot);
+      return;
+    }
+    add_driving_noise_of_gnss(knot.knot.interval);
+    recursion_.through_transition(knot.knot);
+    add_decay_of_gnss(knot);
+  }
+
+  void through_updates(const RecordedKnot& knot, Disturbances& left) {
+    const std::vector<AppliedUpdate>& updates = knot.knot.updates;
+    left.u.resize(updates.size());
+    left.gnss.setZero();
+    left.behind = behind_;
+    left.behind_t = behind_t_;
+    for (std::size_t k = updates.size(); k-- > 0;) {
+      const AppliedUpdate& update = updates[k];
+      Components& u = left.u[k];
+      u = update.S_inv * update.y - update.K.transpose() * recursion_.r();
+      const ComponentCov D = update.S_inv + update.K.transpose() * (recursion_.N() * update.K);
+      for (const NoisePart part : kOfUpdates) {
+        if (place_(part) < 0) continue;
+        const ComponentCov dR = slope_of_R(part, knot.measurements[k], update, knot.C_n_e, model_);
+        if (dR.size() > 0) add(part, 0.5 * (u.dot(dR * u) - D.cwiseProduct(dR).sum()));
+      }
+      if (model_.layout.gnss_error()) left.gnss += update.H.middleCols<3>(*model_.layout.gnss_error()).transpose() * u;
+      recursion_.through_update(update);
+    }
+    behind_ += left.gnss;
+  }
+
+  void at_start() {
+    const Eigen::VectorXd& r = recursion_.r();
+    for (std::size_t i = 0; i < model_.start.size(); ++i) {
+      const StartSlope& start = model_.start[i];
+      gradient_(static_cast<Index>(i)) +=
+          -r.dot(start.estimate) + 0.5 * (r.dot(start.P * r) - start.P.cwiseProduct(recursion_.N()).sum());
+    }
+  }
+
+  [[nodiscard]] const Eigen::VectorXd& gradient() const { return gradient_; }
+
+ private:
+  void add(NoisePart part, double score) {
+    if (place_(part) >= 0) gradient_(place_(part)) += score;
+  }
+  // q = s^2 (1 - phi^2)
+  void add_driving_noise_of_gnss(double interval) {
+    const CorrelatedGnss& gnss = model_.adjustment.correlated_gnss;
+    const double steps = interval / gnss.time_s;
+    const double phi2 = std::exp(-2.0 * steps);
+    for (int axis = 0; axis < 3; ++axis) {
+      const Index g = *model_.layout.gnss_error() + axis;
+      const double s = axis < 2 ? gnss.horizontal_m : gnss.vertical_m;
+      const double half = 0.5 * (recursion_.r()(g) * recursion_.r()(g) - recursion_.N()(g, g)) * s * s;
+      add(axis < 2 ? NoisePart::kCorrelatedHorizontal : NoisePart::kCorrelatedVertical, -2.0 * std::expm1(-2.0 * steps) * half);
+      add(NoisePart::kCorrelatedTime, -2.0 * steps * phi2 * half);
+    }
+  }
+  // dphi = phi dt/tau; r and N are those before the interval by now, Phi' r and Phi' N Phi.
+  void add_decay_of_gnss(const RecordedKnot& knot) {
+    const double steps = knot.knot.interval / model_.adjustment.correlated_gnss.time_s;
+    const Eigen::VectorXd& r = recursion_.r();
+    for (int axis = 0; axis < 3; ++axis) {
+      const Index g = *model_.layout.gnss_error() + axis;
+      const double along = r(g) * knot.P_gnss.row(axis).dot(r) - knot.P_gnss.row(axis).dot(recursion_.N().col(g));
+      add(NoisePart::kCorrelatedTime, steps * (along - r(g) * knot.knot.post.x(g)));
+    }
+    const double phi = std::exp(-steps);
+    behind_t_ = phi * (behind_t_ + steps * behind_);
+    behind_ *= phi;
+  }
+
+  const NoiseModel& model_;
+  Places place_;
+  BackwardRecursion recursion_;
+  Eigen::VectorXd gradient_;
+  Eigen::Vector3d behind_ = Eigen::Vector3d::Zero(), behind_t_ = Eigen::Vector3d::Zero();
+};
+
+/// The filter's answer to the series f_i, in errors d of its estimate: V^-1 f_i is S^-1 e_i.
+class InformationPass {
+ public:
+  explicit InformationPass(const NoiseModel& model)
+      : model_(model),
+        place_(model.parameters),
+        blocks_(model.layout),
+        d_(Eigen::MatrixXd::Zero(model.layout.size(), static_cast<Index>(model.parameters.size()))),
+        information_(Eigen::MatrixXd::Zero(d_.cols(), d_.cols())) {}
+
+  void through_updates(const RecordedKnot& knot, const Disturbances& at) {
+    if (model_.layout.gnss_error()) move_gnss(at);
+    for (std::size_t k = 0; k < knot.knot.updates.size(); ++k) {
+      const AppliedUpdate& update = knot.knot.updates[k];
+      e_.noalias() = update.H * d_;
+      if (model_.layout.gnss_error()) add_gnss(update);
+      for (const NoisePart part : kOfUpdates) {
+        if (place_(part) < 0) continue;
+        const ComponentCov dR = slope_of_R(part, knot.measurements[k], update, knot.C_n_e, model_);
+        if (dR.size() > 0) e_.col(place_(part)) += dR * at.u[k];
+      }
+      S_inv_e_.noalias() = update.S_inv * e_;
+      information_.noalias() += 0.5 * e_.transpose() * S_inv_e_;
+      d_.noalias() -= update.K * e_;
+    }
+  }
+
+  void through_interval(const RecordedKnot& knot, const Disturbances& at) {
+    const auto rest = d_.rows() - kNav;
+    nav_.noalias() = knot.knot.Phi_n * d_.topRows(knot.knot.Phi_n.cols());
+    blocks_.over(knot.knot.interval).apply(d_.bottomRows(rest));
+    d_.topRows<kNav>() = nav_;
+    if (const Index i = place_(NoisePart::kGyro); i >= 0) d_.col(i).head<kNav>() += 2.0 * at.gyro;
+    if (const Index i = place_(NoisePart::kAccel); i >= 0) d_.col(i).head<kNav>() += 2.0 * at.accel;
+    const double steps = knot.knot.interval / model_.adjustment.correlated_gnss.time_s;
+    const double phi = std::exp(-steps);
+    before_t_ = phi * (before_t_ + steps * before_);
+    before_ *= phi;
+  }
+
+  [[nodiscard]] const Eigen::MatrixXd& information() const { return information_; }
+
+ private:
+  // The correlated error is s^2 exp(-|t|/tau) between any two knots: what its derivatives make of H' u.
+  void move_gnss(const Disturbances& at) {
+    const CorrelatedGnss& gnss = model_.adjustment.correlated_gnss;
+    const Eigen::Vector3d s2(gnss.horizontal_m * gnss.horizontal_m, gnss.horizontal_m * gnss.horizontal_m,
+                             gnss.vertical_m * gnss.vertical_m);
+    before_ += at.gnss;
+    by_size_ = 2.0 * s2.cwiseProduct(before_ + at.behind);
+    by_time_ = s2.cwiseProduct(before_t_ + at.behind_t);
+  }
+  void add_gnss(const AppliedUpdate& update) {
+    const auto H = update.H.middleCols<3>(*model_.layout.gnss_error());
+    if (const Index i = place_(NoisePart::kCorrelatedHorizontal); i >= 0) e_.col(i) += H.leftCols<2>() * by_size_.head<2>();
+    if (const Index i = place_(NoisePart::kCorrelatedVertical); i >= 0) e_.col(i) += H.col(2) * by_size_.z();
+    if (const Index i = place_(NoisePart::kCorrelatedTime); i >= 0) e_.col(i) += H * by_time_;
+  }
+
+  const NoiseModel& model_;
+  Places place_;
+  BlockTransitions blocks_;
+  Eigen::MatrixXd d_, e_, S_inv_e_, nav_;
+  Eigen::Vector3d before_ = Eigen::Vector3d::Zero(), before_t_ = Eigen::Vector3d::Zero();
+  Eigen::Vector3d by_size_, by_time_;
+  Eigen::MatrixXd information_;
+};
+
+}  // namespace
+
+NoiseScores noise_scores(const PassRecord& pass, const NoiseModel& model) {
+  std::vector<Disturbances> disturbances(pass.size());
+  BackwardScores backward(model);
+  for (std::size_t i = pass.size(); i-- > 0;) {
+    if (i + 1 < pass.size()) backward.through_interval(pass[i], disturbances[i]);
+    backward.through_updates(pass[i], disturbances[i]);
+  }
+  backward.at_start();
+  InformationPass forward(model);
+  for (std::size_t i = 0; i < pass.size(); ++i) {
+    forward.through_updates(pass[i], disturbances[i]);
+    if (i + 1 < pass.size()) forward.through_interval(pass[i], disturbances[i]);
+  }
+  return {backward.gradient(), forward.information()};
+}
+
+}  // namespace coast::estimate

@@ -1,0 +1,192 @@
+#include "noise_search.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <deque>
+
+namespace coast::estimate {
+
+namespace {
+
+using Eigen::Index;
+
+/// What a step did to the slopes.
+struct Secant {
+  Eigen::VectorXd step, fall;
+};
+
+// Broyden, Fletcher, Goldfarb and Shanno; B stays positive.
+void correct(Eigen::MatrixXd& B, const Secant& secant) {
+  const double curvature = secant.step.dot(secant.fall);
+  const Eigen::VectorXd Bs = B * secant.step;
+  const double modelled = secant.step.dot(Bs);
+  constexpr double kLeast = 0.05;  // of what was modelled: less is no curvature to go by
+  if (!(modelled > 0.0) || curvature < kLeast * modelled) return;
+  B += secant.fall * secant.fall.transpose() / curvature - Bs * Bs.transpose() / modelled;
+}
+
+/// Of each parameter, with all others known.
+Eigen::VectorXd sigmas(const Eigen::MatrixXd& information) {
+  constexpr double kLeast = 1.0;
+  return information.diagonal().cwiseMax(kLeast).cwiseSqrt().cwiseInverse();
+}
+
+double promised(const Eigen::VectorXd& g, const Eigen::MatrixXd& B, const Eigen::VectorXd& step) {
+  return g.dot(step) - 0.5 * step.dot(B * step);
+}
+
+// A variance that is far too small asks for e times itself at most, however much more is there: of g = m (v'/v - 1) and
+// B = m v'/v a step of s = g/B stands for v' = v / (1 - s).
+Eigen::VectorXd lengthened(Eigen::VectorXd step, const Eigen::VectorXd& high) {
+  for (Index i = 0; i < step.size(); ++i) {
+    if (!(step(i) > 0.0)) continue;
+    const double whole = step(i) < 0.5 ? -0.5 * std::log1p(-2.0 * step(i)) : high(i);
+    step(i) = std::min(high(i), whole);
+  }
+  return step;
+}
+
+/// Goes there if that does not lose.
+bool take(const Likelihood& likelihood, const Eigen::VectorXd& step, double least, SearchPoint& at) {
+  const double value = likelihood.value(at.theta + step);
+  if (!(value > least)) return false;
+  at.theta += step;
+  at.value = value;
+  at.scores = likelihood.scores();
+  return true;
+}
+
+/// Shorter steps until one does not lose; false where none does.
+bool take_some(const Likelihood& likelihood, Eigen::VectorXd step, double least, SearchPoint& at) {
+  constexpr int kHalvings = 6;
+  for (int k = 0; k <= kHalvings; ++k, step *= 0.5)
+    if (take(likelihood, step, least, at)) return true;
+  return false;
+}
+
+}  // namespace
+
+SearchPoint point_at(const Likelihood& likelihood, const Eigen::VectorXd& theta) {
+  SearchPoint at{theta, likelihood.value(theta), {}, {}};
+  if (!std::isfinite(at.value)) return at;
+  at.scores = likelihood.scores();
+  at.information = at.scores.information;
+  return at;
+}
+
+Eigen::VectorXd SearchState::slopes() const {
+  if (!beyond_scores) return at.scores.gradient;
+  return at.scores.gradient + beyond_scores->slopes + beyond_scores->change * (at.theta - beyond_scores->at);
+}
+
+// One coordinate after the other: each is a parabola.
+Eigen::VectorXd best_step(const Eigen::VectorXd& g, const Eigen::MatrixXd& B, const Eigen::VectorXd& low,
+                          const Eigen::VectorXd& high) {
+  constexpr int kMostSweeps = 20000;
+  constexpr double kStill = 1e-9;
+  Eigen::VectorXd step = Eigen::VectorXd::Zero(g.size());
+  for (int sweep = 0; sweep < kMostSweeps; ++sweep) {
+    double moved = 0.0;
+    for (Index i = 0; i < g.size(); ++i) {
+      const double slope = g(i) - B.row(i).dot(step) + B(i, i) * step(i);
+      const double best = B(i, i) > 0.0 ? slope / B(i, i) : std::copysign(high(i) - low(i), slope);
+      const double there = std::clamp(best, low(i), high(i));
+      moved = std::max(moved, std::abs(there - step(i)));
+      step(i) = there;
+    }
+    if (moved < kStill) break;
+  }
+  return step;
+}
+
+void climb(const Likelihood& likelihood, const SearchBox& box, double settled, SearchState& state) {
+  constexpr int kMostSteps = 40;
+  constexpr double kFarthest = 2.0;  // a factor of 7
+  constexpr double kFar = 1000.0;    // of the log-likelihood
+  constexpr double kNear = 0.5;      // beyond it a secant says nothing of where it ends
+  constexpr double kNothing = 1e-3;  // of the log-likelihood: what a step may lose to what is not known of the slopes
+  SearchPoint& at = state.at;
+  std::deque<Secant> secants;
+  for (int i = 0; i < kMostSteps; ++i) {
+    const Eigen::VectorXd low = (box.low - at.theta).cwiseMax(-kFarthest);
+    const Eigen::VectorXd high = (box.high - at.theta).cwiseMin(kFarthest);
+    const Eigen::VectorXd before = at.theta, slopes = state.slopes();
+    const Eigen::VectorXd step = best_step(slopes, at.information, low, high);
+    const double gain = promised(slopes, at.information, step);
+    if (gain < settled) return;
+    const bool taken = (gain > kFar && take(likelihood, lengthened(step, high), at.value, at)) ||
+                       take_some(likelihood, step, at.value - kNothing, at);
+    if (!taken) return;
+    secants.push_back({at.theta - before, slopes - state.slopes()});
+    if (secants.back().step.lpNorm<Eigen::Infinity>() > kNear) secants.clear();
+    if (secants.size() > static_cast<std::size_t>(slopes.size())) secants.pop_front();
+    if (!state.beyond_scores) at.information = at.scores.information;
+    for (const Secant& secant : secants) correct(at.information, secant);
+  }
+}
+
+namespace {
+
+/// One-sided: what the second derivative adds is taken off. Second derivatives are found by the way.
+Eigen::VectorXd slopes_with_curvature(const Likelihood& likelihood, SearchPoint& at) {
+  constexpr double kShare = 0.03;  // of a sigma
+  const Index n = at.theta.size();
+  const Eigen::VectorXd steps = kShare * sigmas(at.information);
+  Eigen::MatrixXd information(n, n);
+  Eigen::VectorXd slopes(n);
+  for (Index i = 0; i < n; ++i) {
+    slopes(i) = (likelihood.value(at.theta + steps(i) * Eigen::VectorXd::Unit(n, i)) - at.value) / steps(i);
+    information.col(i) = (at.scores.gradient - likelihood.scores().gradient) / steps(i);
+  }
+  at.information = 0.5 * (information + information.transpose());
+  return slopes + 0.5 * steps.cwiseProduct(at.information.diagonal());
+}
+
+/// By both sides.
+Eigen::VectorXd slopes_by_values(const Likelihood& likelihood, const SearchPoint& at) {
+  constexpr double kShare = 0.1;  // rounding of a value, 1e-5, and third derivatives, 0.1 a cubed sigma, are 2e-4 alike
+  const Index n = at.theta.size();
+  const Eigen::VectorXd steps = kShare * sigmas(at.information);
+  Eigen::VectorXd slopes(n);
+  for (Index i = 0; i < n; ++i) {
+    const Eigen::VectorXd step = steps(i) * Eigen::VectorXd::Unit(n, i);
+    slopes(i) = (likelihood.value(at.theta + step) - likelihood.value(at.theta - step)) / (2.0 * steps(i));
+  }
+  return slopes;
+}
+
+}  // namespace
+
+void relinearise(const Likelihood& likelihood, bool curvature, SearchState& state) {
+  SearchPoint& at = state.at;
+  const Eigen::VectorXd slopes =
+      (curvature ? slopes_with_curvature(likelihood, at) : slopes_by_values(likelihood, at)) - at.scores.gradient;
+  Relinearised now{at.theta, slopes, Eigen::MatrixXd::Zero(slopes.size(), slopes.size())};
+  if (state.beyond_scores) {  // Broyden's rule, with sigmas for units
+    constexpr double kTold = 0.1;  // sigmas: over less the difference is rounding
+    const Relinearised& last = *state.beyond_scores;
+    const Eigen::VectorXd moved = now.at - last.at;
+    const Eigen::VectorXd weighted = at.information * moved;
+    now.change = last.change;
+    if (const double size = moved.dot(weighted); size > kTold * kTold)
+      now.change += (now.slopes - last.slopes - last.change * moved) * weighted.transpose() / size;
+  }
+  state.beyond_scores = std::move(now);
+}
+
+void polish(const Likelihood& likelihood, const SearchBox& box, SearchState& state) {
+  constexpr int kMost = 5;
+  constexpr double kSettled = 1e-7;  // of the log-likelihood: half a thousandth of a sigma
+  constexpr double kLast = 5e-5;     // a hundredth: what relinearising then leaves of it is a tenth
+  for (int i = 0; i < kMost; ++i) {
+    relinearise(likelihood, i == 0, state);
+    const Eigen::VectorXd step =
+        best_step(state.slopes(), state.at.information, box.low - state.at.theta, box.high - state.at.theta);
+    const double gain = promised(state.slopes(), state.at.information, step);
+    if (getenv("FITDBG")) fprintf(stderr, "polish %d value %.6f gain %.3g\n", i, state.at.value, gain);
+    climb(likelihood, box, kSettled, state);
+    if (gain < kLast) return;
+  }
+}
+
+}  // namespace coast::estimate

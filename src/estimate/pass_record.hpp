@@ -1,0 +1,36 @@
+#pragma once
+// A pass of the filter as a linear system, for the scores of its noise; private to the room.
+
+#include <vector>
+
+#include "coast/estimate/forward_filter.hpp"
+#include "coast/estimate/knot.hpp"
+
+namespace coast::estimate {
+
+/// A knot with its interval.
+struct RecordedKnot {
+  Knot knot;                               ///< without what only a continuation needs: covariance, remainder
+  std::vector<Measurement> measurements;   ///< of its updates, in their order
+  WhiteNoise white;                        ///< of the interval
+  Eigen::Matrix3Xd P_gnss;                 ///< rows of P_post of the correlated GNSS error; empty where there is none
+  Eigen::Matrix3d C_n_e;
+};
+
+/// The room is kept for the next pass.
+class PassRecord {
+ public:
+  /// @param filter  must outlive the record's use; its gate must be open, so that every measurement becomes an update
+  FilterResult run(const ForwardFilter& filter, const FilterState& start);
+  [[nodiscard]] std::size_t size() const { return size_; }
+  [[nodiscard]] const RecordedKnot& operator[](std::size_t i) const { return knots_[i]; }
+
+ private:
+  void add(const Knot& knot, const WhiteNoise& white, const std::optional<int>& gnss_error);
+
+  std::vector<RecordedKnot> knots_;
+  std::size_t size_ = 0;
+  std::vector<Measurement> pending_;
+};
+
+}  // namespace coast::estimate
