@@ -162,8 +162,6 @@ NoiseFit fit_noise(const Mission& mission, const noise::ImuErrorModel& model, co
   fit.adjustment = objective.at(search.at.theta);
   fit.bounds = bounds_met(search.at.theta, box);
   fit.evaluations = objective.passes();
-  if (getenv("FITDBG")) for (std::size_t i = 0; i < parameters.size() && choice.to_the_optimum; ++i) fprintf(stderr, "  %-24s %12.7f sd %.4f needed %.3f\n", parameters[i].name, std::exp(search.at.theta(Index(i))), fit.log_sd[i], fit.needed[i]);
-  if (getenv("FITDBG")) fprintf(stderr, "passes %d value %.6f\n", fit.evaluations, search.at.value);
   return fit;
 }
 

@@ -183,7 +183,6 @@ void polish(const Likelihood& likelihood, const SearchBox& box, SearchState& sta
     const Eigen::VectorXd step =
         best_step(state.slopes(), state.at.information, box.low - state.at.theta, box.high - state.at.theta);
     const double gain = promised(state.slopes(), state.at.information, step);
-    if (getenv("FITDBG")) fprintf(stderr, "polish %d value %.6f gain %.3g\n", i, state.at.value, gain);
     climb(likelihood, box, kSettled, state);
     if (gain < kLast) return;
   }
