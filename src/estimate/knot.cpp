@@ -114,9 +114,11 @@ KnotStore::KnotStore(std::size_t memory_limit_bytes) : limit_(memory_limit_bytes
 void KnotStore::append(const Knot& knot) {
   if (memory_.size() > limit_) spill();
   const std::size_t begin = memory_.size();
+  const std::size_t size = packed_size(knot);
+  if (memory_.capacity() == 0) memory_.reserve(limit_ + 2 * size);  // untouched it costs nothing, growing would copy it all
   offsets_.push_back(spilled_ + begin);
   times_.push_back(knot.post.nav.t);
-  memory_.resize(begin + packed_size(knot));
+  memory_.resize(begin + size);
   Packer pack(memory_.data() + begin);
   pack.integer(knot.post.x.size());
   pack.integer(knot.post.nav.t.nanoseconds());

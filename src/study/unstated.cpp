@@ -13,6 +13,30 @@
 
 namespace coast::study {
 
+namespace {
+
+// Where the fit of the noise ended on bounds, and what each of them says; empty where it did not.
+std::string bounds_told(const estimate::NoiseFit& fit) {
+  std::string none, other;
+  for (std::size_t i = 0; i < fit.bounds.size(); ++i) {
+    const std::string& name = fit.names[i];
+    if (fit.bounds[i] == estimate::Bound::kNone) continue;
+    // Of an amplitude or a factor on GNSS sigmas nothing is left: an answer. Of a time or of the IMU's noise it is none.
+    const bool vanishes = name.starts_with("gnss_scale") || name.ends_with("_m");
+    std::string& list = fit.bounds[i] == estimate::Bound::kLower && vanishes ? none : other;
+    list += (list.empty() ? "" : ", ") + name;
+  }
+  std::string text;
+  if (!none.empty())
+    text = fmt::format("The fit of the noise leaves nothing of {}: the other errors of the fixes account for all of it.", none);
+  if (!other.empty())
+    text += fmt::format("{}The fit of the noise ends on a bound of {}: the recording has errors of another kind.",
+                        text.empty() ? "" : " ", other);
+  return text;
+}
+
+}  // namespace
+
 // Turns tell a shift of the times to some 0.05 s, and now and then a false one. It is taken where the filter finds the fixes
 // likelier by it; the gate is open, so that both see the same fixes.
 void PreparedMission::choose_time_offset(const Progress& progress) {
@@ -162,7 +186,9 @@ void PreparedMission::note_adaptations() {
                      "accelerometer {:.3g}, {:.3g}, {:.3g} times; taken so (imu.noise.drift_factors). `noise: stated` keeps "
                      "what is stated.",
                      drift_.gyro.x(), drift_.gyro.y(), drift_.gyro.z(), drift_.accel.x(), drift_.accel.y(), drift_.accel.z()));
-  if (!noise_ratio_ || !noise_fit_) return;
+  if (!noise_fit_) return;
+  if (const std::string text = bounds_told(*noise_fit_); !text.empty()) note("noise_on_bound", text);
+  if (!noise_ratio_) return;
   const estimate::NoiseAdjustment& a = noise_fit_->adjustment;
   note("noise_adapted",
        fmt::format(

@@ -149,6 +149,22 @@ TEST(NoiseFit, RecoversTheScaleOfStatedSigmas) {
   EXPECT_GT(fit.log_likelihood_after, fit.log_likelihood_before);
 }
 
+// A receiver that smooths leaves no white noise beside the correlated error.
+TEST(NoiseFit, AScaleOfWhichNothingIsLeftIsTold) {
+  simulate::Scenario scenario = test::drive(260.0, 18);
+  scenario.gnss.sd.setConstant(1e-5);
+  scenario.gnss.stated_sd = Eigen::Vector3d::Constant(0.02);
+  scenario.gnss.correlated = {Eigen::Vector3d::Constant(0.02), 4.0};
+  simulate::SimulatedMission recording = simulate::simulate(scenario);
+  Setup setup = test::setup_of(scenario);
+  setup.noise_fit = estimate::NoiseFitChoice{.gnss_scale = true, .correlated_gnss = true};
+  const PreparedMission mission(std::move(recording.imu), std::move(recording.gnss), setup, {});
+  const auto told = std::ranges::find(mission.adaptations(), "noise_on_bound", &record::Event::kind);
+  ASSERT_NE(told, mission.adaptations().end());
+  EXPECT_NE(told->text.find("gnss_scale_horizontal, gnss_scale_vertical"), std::string::npos) << told->text;
+  EXPECT_EQ(told->text.find("correlated"), std::string::npos) << told->text;
+}
+
 /// A drive whose start is given with a heading that is 6 deg off, and known to be: the filter needs the first minute to find
 /// it.
 class MultiPass : public testing::Test {
