@@ -7,6 +7,7 @@
 #include <cmath>
 #include <limits>
 
+#include "coast/record/error.hpp"
 #include "noise_objective.hpp"
 #include "noise_search.hpp"
 
@@ -28,12 +29,11 @@ namespace {
 
 using Eigen::Index;
 
-/// The mission with other fixes. A member more in Mission does not compile here.
+/// The mission with these fixes in place of its own and of carrier phases. A member more in Mission does not compile here.
 Mission with_fixes(const Mission& mission, const record::GnssRecording& fixes) {
   const auto& [imu, gnss, increments, C_s_b, lever_arm_b, time_offset_s, standstill, earth_rate, first_epoch, carrier,
                restarts] = mission;
-  return {imu,        fixes,      increments,  C_s_b,   lever_arm_b, time_offset_s,
-          standstill, earth_rate, first_epoch, carrier, restarts};
+  return {imu, fixes, increments, C_s_b, lever_arm_b, time_offset_s, standstill, earth_rate, first_epoch, nullptr, restarts};
 }
 
 SearchBox box_of(const std::vector<NoiseParameter>& parameters) {
@@ -77,7 +77,11 @@ void describe(const NoiseObjective& objective, const std::vector<NoiseParameter>
     NoiseAdjustment other = objective.at(optimum.theta);
     NoiseAdjustment stated_noise = as_stated;
     p.value(other) = std::max(p.low, p.value(stated_noise));
-    return objective.run(other).log_likelihood;
+    try {
+      return objective.run(other).log_likelihood;
+    } catch (const NumericalError&) {
+      return -std::numeric_limits<double>::infinity();  // it is needed for the filter to hold
+    }
   };
   const FilterResult stated = objective.run(as_stated);
   fit.innovations = stated.innovations.size();
@@ -126,7 +130,7 @@ NoiseAdjustment starting_point(const FilterOptions& options, const NoiseFitChoic
 NoiseFit fit_noise(const Mission& mission, const noise::ImuErrorModel& model, const FilterOptions& options,
                    const NoiseFitChoice& choice, const NoiseAdjustment& from,
                    const std::function<FilterState(const ForwardFilter&)>& start, const std::function<void(double)>& progress) {
-  constexpr double kNearby = 0.05;   // of the log-likelihood: three tenths of a sigma
+  constexpr double kNearby = 5e-3;   // of the log-likelihood: a tenth of a sigma
   constexpr double kSettled = 1e-3;  // what the gate refuses does not change by it
   const bool velocities = options.use_gnss_velocity &&
                           std::ranges::any_of(mission.gnss.fixes, [](const auto& fix) { return fix.velocity.has_value(); });

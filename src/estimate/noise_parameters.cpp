@@ -10,27 +10,35 @@ std::vector<NoiseParameter> free_parameters(const NoiseFitChoice& choice, bool v
   };
   if (choice.gnss_scale) {
     constexpr double kLow = 0.005, kHigh = 100.0;
-    add(NoisePart::kScaleHorizontal, "gnss_scale_horizontal", [](Adjustment& a) -> double& { return a.gnss_scale.horizontal; },
+    add(
+        NoisePart::kScaleHorizontal, "gnss_scale_horizontal", [](Adjustment& a) -> double& { return a.gnss_scale.horizontal; },
         kLow, kHigh);
-    add(NoisePart::kScaleVertical, "gnss_scale_vertical", [](Adjustment& a) -> double& { return a.gnss_scale.vertical; }, kLow,
+    add(
+        NoisePart::kScaleVertical, "gnss_scale_vertical", [](Adjustment& a) -> double& { return a.gnss_scale.vertical; }, kLow,
         kHigh);
     if (velocities)
-      add(NoisePart::kScaleVelocity, "gnss_scale_velocity", [](Adjustment& a) -> double& { return a.gnss_scale.velocity; }, kLow,
-          kHigh);
+      add(
+          NoisePart::kScaleVelocity, "gnss_scale_velocity", [](Adjustment& a) -> double& { return a.gnss_scale.velocity; },
+          kLow, kHigh);
   }
   if (choice.correlated_gnss) {
     constexpr double kLow = 1e-4, kHigh = 20.0;  // m
-    add(NoisePart::kCorrelatedHorizontal, "correlated_horizontal_m",
+    add(
+        NoisePart::kCorrelatedHorizontal, "correlated_horizontal_m",
         [](Adjustment& a) -> double& { return a.correlated_gnss.horizontal_m; }, kLow, kHigh);
-    add(NoisePart::kCorrelatedVertical, "correlated_vertical_m",
+    add(
+        NoisePart::kCorrelatedVertical, "correlated_vertical_m",
         [](Adjustment& a) -> double& { return a.correlated_gnss.vertical_m; }, kLow, kHigh);
-    add(NoisePart::kCorrelatedTime, "correlated_time_s", [](Adjustment& a) -> double& { return a.correlated_gnss.time_s; }, 1.0,
+    add(
+        NoisePart::kCorrelatedTime, "correlated_time_s", [](Adjustment& a) -> double& { return a.correlated_gnss.time_s; }, 1.0,
         600.0);
   }
   if (choice.imu_white_noise) {
     constexpr double kLow = 0.05, kHigh = 1000.0;
-    add(NoisePart::kGyro, "gyro_factor", [](Adjustment& a) -> double& { return a.gyro_factor; }, kLow, kHigh);
-    add(NoisePart::kAccel, "accel_factor", [](Adjustment& a) -> double& { return a.accel_factor; }, kLow, kHigh);
+    add(
+        NoisePart::kGyro, "gyro_factor", [](Adjustment& a) -> double& { return a.gyro_factor; }, kLow, kHigh);
+    add(
+        NoisePart::kAccel, "accel_factor", [](Adjustment& a) -> double& { return a.accel_factor; }, kLow, kHigh);
   }
   return p;
 }

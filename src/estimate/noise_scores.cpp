@@ -17,7 +17,8 @@ class Places {
  public:
   explicit Places(const std::vector<NoiseParameter>& parameters) {
     at_.fill(-1);
-    for (std::size_t i = 0; i < parameters.size(); ++i) at_[static_cast<std::size_t>(parameters[i].part)] = static_cast<Index>(i);
+    for (std::size_t i = 0; i < parameters.size(); ++i)
+      at_[static_cast<std::size_t>(parameters[i].part)] = static_cast<Index>(i);
   }
   [[nodiscard]] Index operator()(NoisePart part) const { return at_[static_cast<std::size_t>(part)]; }
 

@@ -34,9 +34,9 @@ struct NoiseScores {
 ///     x0:     -r' dx0
 ///     Phi:    tr[(r r' - N) dPhi P Phi'] - r' dPhi x,    r and N behind the transition, P and x before it
 ///
-/// and one forward for the average information (Gilmour, Thompson & Cullis 1995), 1/2 f_i' V^-1 f_j with f_i = dV_i V^-1 y and V
-/// the covariance of all measurements. What the parameters do to the nominal trajectory, about which the filter is linearised,
-/// has no part in them.
+/// and one forward for the average information (Gilmour, Thompson & Cullis 1995), 1/2 f_i' V^-1 f_j with f_i = dV_i V^-1 y and
+/// V the covariance of all measurements. What the parameters do to the nominal trajectory, about which the filter is
+/// linearised, has no part in them.
 [[nodiscard]] NoiseScores noise_scores(const PassRecord& pass, const NoiseModel& model);
 
 }  // namespace coast::estimate

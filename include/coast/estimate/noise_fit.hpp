@@ -34,7 +34,7 @@ struct NoiseFit {
   double log_likelihood_before = 0.0;  ///< with the stated noise
   double log_likelihood_after = 0.0;
   std::size_t innovations = 0;  ///< position and velocity innovations that entered
-  int evaluations = 0;  ///< passes of the filter
+  int evaluations = 0;          ///< passes of the filter
   /// Standard deviations of the logarithms of the free parameters, in the order of `names`: by the second derivatives at the
   /// optimum, each with all others free; infinite where the innovations do not tell it.
   std::vector<std::string> names;
@@ -51,8 +51,8 @@ struct NoiseFit {
 [[nodiscard]] NoiseAdjustment starting_point(const FilterOptions& options, const NoiseFitChoice& choice);
 
 /// Maximum likelihood of the innovations (prediction-error decomposition; Harvey 1989, section 3.4) over the logarithms of the
-/// free parameters, by Newton's steps with exact scores: each is a pass of the filter and one backward over its knots. The gate is
-/// open while fitting: what the final filter then refuses is left out and the fit repeated once.
+/// free parameters, by Newton's steps with exact scores: each is a pass of the filter and one backward over its knots. The gate
+/// is open while fitting: what the final filter then refuses is left out and the fit repeated once.
 /// @param from   where the search begins; what is not free keeps its value
 /// @param start  state at the first epoch, covariance from ForwardFilter::initial_state
 /// @throws NumericalError  the filter fails at the start values
