@@ -1,5 +1,6 @@
 #include "noise_search.hpp"
 
+#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
 #include <deque>
@@ -138,8 +139,10 @@ Eigen::VectorXd slopes_with_curvature(const Likelihood& likelihood, SearchPoint&
     slopes(i) = (likelihood.value(at.theta + steps(i) * Eigen::VectorXd::Unit(n, i)) - at.value) / steps(i);
     information.col(i) = (at.scores.gradient - likelihood.scores().gradient) / steps(i);
   }
-  at.information = 0.5 * (information + information.transpose());
-  return slopes + 0.5 * steps.cwiseProduct(at.information.diagonal());
+  slopes += 0.5 * steps.cwiseProduct(information.diagonal());
+  information = (0.5 * (information + information.transpose())).eval();
+  if (information.llt().info() == Eigen::Success) at.information = information;  // else the average one, which is no saddle
+  return slopes;
 }
 
 /// By both sides.
