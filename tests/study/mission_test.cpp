@@ -151,12 +151,12 @@ TEST(NoiseFit, RecoversTheScaleOfStatedSigmas) {
 
 // A receiver that smooths leaves no white noise beside the correlated error.
 TEST(NoiseFit, AScaleOfWhichNothingIsLeftIsTold) {
-  simulate::Scenario scenario = test::drive(260.0, 18);
+  simulate::Scenario scenario = test::drive(360.0, 18);
   scenario.gnss.sd.setConstant(1e-5);
   scenario.gnss.stated_sd = Eigen::Vector3d::Constant(0.02);
   scenario.gnss.correlated = {Eigen::Vector3d::Constant(0.02), 4.0};
   simulate::SimulatedMission recording = simulate::simulate(scenario);
-  Setup setup = test::setup_of(scenario);
+  auto setup = test::setup_of(scenario);
   setup.noise_fit = estimate::NoiseFitChoice{.gnss_scale = true, .correlated_gnss = true};
   const PreparedMission mission(std::move(recording.imu), std::move(recording.gnss), setup, {});
   const auto told = std::ranges::find(mission.adaptations(), "noise_on_bound", &record::Event::kind);
