@@ -19,11 +19,11 @@ struct Secant {
 // Broyden, Fletcher, Goldfarb and Shanno; B stays positive.
 void correct(Eigen::MatrixXd& B, const Secant& secant) {
   const double curvature = secant.step.dot(secant.fall);
-  const Eigen::VectorXd Bs = B * secant.step;
-  const double modelled = secant.step.dot(Bs);
+  const Eigen::VectorXd model_fall = B * secant.step;
+  const double modelled = secant.step.dot(model_fall);
   constexpr double kLeast = 0.05;  // of what was modelled: less is no curvature to go by
   if (!(modelled > 0.0) || curvature < kLeast * modelled) return;
-  B += secant.fall * secant.fall.transpose() / curvature - Bs * Bs.transpose() / modelled;
+  B += secant.fall * secant.fall.transpose() / curvature - model_fall * model_fall.transpose() / modelled;
 }
 
 /// Of each parameter, with all others known.

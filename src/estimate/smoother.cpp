@@ -40,7 +40,7 @@ SmoothedKnot smooth_first(const KnotStore& knots, const StateLayout& layout) {
     if (i + 1 < knots.size()) backward.through_transition(knot);
     if (i > 0) backward.through_updates(knot);
   }
-  const SmoothedKnot first = backward.smoothed_state(knot);
+  SmoothedKnot first = backward.smoothed_state(knot);
   if (!first.nav.r_eb_e.allFinite())
     throw NumericalError("smoothed state is not finite", geo::to_string(knot.post.nav.t), "the forward filter has diverged");
   return first;

@@ -169,8 +169,8 @@ TEST(NoiseFit, FindsWhatWasSimulatedWithinItsSigmas) {
 TEST(NoiseFit, LeavesOutWhatTheGateRefuses) {
   AllFree with, without;
   std::vector<record::GnssFix>& fixes = without.recording().gnss.fixes;
-  for (const std::size_t bad : {900U, 501U, 500U, 200U}) {
-    with.recording().gnss.fixes[bad].r_ea_e += Eigen::Vector3d(0.0, 4.0, 3.0);
+  for (const int bad : {900, 501, 500, 200}) {
+    with.recording().gnss.fixes[static_cast<std::size_t>(bad)].r_ea_e += Eigen::Vector3d(0.0, 4.0, 3.0);
     fixes.erase(fixes.begin() + bad);
   }
   const NoiseAdjustment from = starting_point({}, AllFree::kAll);
