@@ -4,14 +4,14 @@
 #include <cmath>
 
 #include "coast/geo/earth.hpp"
+#include "coast/ins/gap.hpp"
 
 namespace coast::estimate {
 
 namespace {
 
-// What is not known of the motion while IMU samples are missing: errors of the bridged rate and specific force that last for
-// a manoeuvre.
-constexpr double kGapRateSd = 0.3;   // rad/s
+// What is not known of the motion while IMU samples are missing: errors of the bridged rate (ins/gap.hpp) and specific force
+// that last for a manoeuvre.
 constexpr double kGapForceSd = 3.0;  // m/s^2
 constexpr double kManoeuvre = 0.5;   // s, correlation time
 // However long the gap, a land, sea or air vehicle comes out of it near level and at a speed of its kind. The heading may be
@@ -95,7 +95,7 @@ void Propagation::add_gap_noise(Eigen::MatrixXd& P) {
   if (gap_ == 0.0) return;
   const double grown = integrated_variance(gap_before_ + gap_) - integrated_variance(gap_before_);
   gap_before_ += gap_;
-  const double psi2 = kGapRateSd * kGapRateSd * grown;
+  const double psi2 = ins::kGapRateSd * ins::kGapRateSd * grown;
   const double v2 = kGapForceSd * kGapForceSd * grown;
   const Eigen::Matrix3d C_n_e = geo::C_n_e(geo::geodetic_from_ecef(navigator_.nav().r_eb_e));
   add_bounded(P.block<3, 3>(kPsi, kPsi), C_n_e, psi2, {kGapTiltMax, kGapTiltMax, kGapHeadingMax});

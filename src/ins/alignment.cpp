@@ -9,6 +9,7 @@
 #include "coast/geo/earth.hpp"
 #include "coast/geo/rotation.hpp"
 #include "coast/geo/units.hpp"
+#include "coast/ins/gap.hpp"
 #include "coast/ins/strapdown.hpp"
 #include "coast/record/error.hpp"
 #include "force_match.hpp"
@@ -19,7 +20,6 @@ namespace coast::ins {
 namespace {
 
 constexpr double kShortGap = 0.1;                                // s: samples missing for less turn a body by little
-constexpr double kGapRateSd = 0.3;                               // rad/s, of what turns it meanwhile
 constexpr double kGoodHeading = 1.0 * geo::kDegree;              // the search for a better window ends
 constexpr double kFairHeading = 5.0 * geo::kDegree;              // taken where `kPatience` brought none better
 constexpr double kPatience = 60.0;                               // s

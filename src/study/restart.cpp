@@ -2,14 +2,14 @@
 
 #include <algorithm>
 
+#include "coast/ins/gap.hpp"
 #include "coast/record/error.hpp"
 
 namespace coast::study {
 namespace {
 
-constexpr double kMinutes = 150.0;     // s that are looked at
-constexpr double kVelocitySd = 30.0;   // m/s, of a vehicle that nothing else is known of
-constexpr double kTurnedRateSd = 0.3;  // rad/s: what a gap of a second turns a body by
+constexpr double kMinutes = 150.0;    // s that are looked at
+constexpr double kVelocitySd = 30.0;  // m/s, of a vehicle that nothing else is known of
 
 bool ends_a_gap(const record::ImuRecording& imu, std::size_t i) {
   return imu.samples[i].t - imu.samples[i - 1].t > kLongGap + 1.0 / imu.rate_hz;
@@ -79,7 +79,7 @@ std::optional<estimate::Restart> found_anew(const record::ImuRecording& imu, con
     const PreparedMission behind(std::move(stretch), std::move(fixes), plain(setup), {});
     const ins::InitialState& start = behind.start();
     const double gap = imu.samples[at].t - imu.samples[at - 1].t;
-    if (start.sd_attitude_n.z() < kTurnedRateSd * gap)
+    if (start.sd_attitude_n.z() < ins::kGapRateSd * gap)
       return estimate::Restart{start.nav, start.sd_position_n, start.sd_velocity_n, start.sd_attitude_n};
   } catch (const NumericalError&) {  // too little motion
   } catch (const InputError&) {      // too few samples or fixes
