@@ -7,6 +7,7 @@
 
 #include "coast/io/writers.hpp"
 #include "coast/record/trajectory.hpp"
+#include "coast/study/interpolation.hpp"
 #include "run_config.hpp"
 
 namespace coast::cli {
@@ -22,7 +23,7 @@ class TrajectoryOutput {
  private:
   const OutputOptions& options_;
   std::vector<std::unique_ptr<io::TrajectoryWriter>> writers_;
-  std::optional<record::NavState> previous_;
+  study::PassingRate rate_;
   std::optional<geo::GpsTime> last_written_;
 };
 

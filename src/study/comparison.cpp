@@ -4,7 +4,6 @@
 
 #include "coast/geo/earth.hpp"
 #include "coast/geo/rotation.hpp"
-#include "coast/study/interpolation.hpp"
 
 namespace coast::study {
 
@@ -61,13 +60,10 @@ void Comparison::add(const record::TrajectoryEpoch& epoch) {
                                                       [](const record::NavState& nav, geo::GpsTime t) { return nav.t < t; }) -
                                      states.begin());
   }
+  const Eigen::Vector3d& rate = rate_.at(epoch.nav);
   for (; next_ < states.size() && states[next_].t <= epoch.nav.t; ++next_) {
     record::TrajectoryEpoch at = epoch;
-    Eigen::Vector3d rate = Eigen::Vector3d::Zero();
-    if (previous_) {
-      at.nav = interpolate(previous_->nav, epoch.nav, states[next_].t);
-      rate = mean_rate(previous_->nav, epoch.nav);
-    }
+    if (previous_) at.nav = interpolate(previous_->nav, epoch.nav, states[next_].t);
     at.nav = at_point(at.nav, lever_arm_b_, rate);
     const ErrorSample error = error_of(at, states[next_]);
     statistics_.add(error);

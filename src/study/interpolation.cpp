@@ -6,6 +6,22 @@
 
 namespace coast::study {
 
+namespace {
+
+// By how much positions differ from the mean of the velocities: dt^3 / 12 times the jerk.
+Eigen::Vector3d step_beyond_velocity(const record::NavState& a, const record::NavState& b) {
+  return b.r_eb_e - a.r_eb_e - 0.5 * (b.t - a.t) * (a.v_eb_e + b.v_eb_e);
+}
+
+}  // namespace
+
+bool corrected_between(const record::NavState& a, const record::NavState& b) {
+  constexpr double kJerk = 50.0;     // m/s^3
+  constexpr double kDigits = 2e-9;  // m: rounding of coordinates from the centre of the Earth
+  const double dt = b.t - a.t;
+  return step_beyond_velocity(a, b).norm() > kJerk * dt * dt * dt / 12.0 + kDigits;
+}
+
 record::NavState interpolate(const record::NavState& a, const record::NavState& b, geo::GpsTime t, bool has_velocity) {
   const double dt = b.t - a.t;
   const double s = dt > 0.0 ? (t - a.t) / dt : 0.0;
@@ -21,8 +37,8 @@ record::NavState interpolate(const record::NavState& a, const record::NavState& 
   const double s3 = s2 * s;
   nav.r_eb_e = (1.0 - 3.0 * s2 + 2.0 * s3) * a.r_eb_e + (3.0 * s2 - 2.0 * s3) * b.r_eb_e +
                dt * ((s - 2.0 * s2 + s3) * a.v_eb_e + (s3 - s2) * b.v_eb_e);
-  nav.v_eb_e =
-      (6.0 / dt) * (s - s2) * (b.r_eb_e - a.r_eb_e) + (1.0 - 4.0 * s + 3.0 * s2) * a.v_eb_e + (3.0 * s2 - 2.0 * s) * b.v_eb_e;
+  nav.v_eb_e = (1.0 - s) * a.v_eb_e + s * b.v_eb_e;  // the cubic's derivative is this and the rest
+  if (!corrected_between(a, b)) nav.v_eb_e += (6.0 / dt) * (s - s2) * step_beyond_velocity(a, b);
   return nav;
 }
 
@@ -49,6 +65,15 @@ Eigen::Vector3d mean_rate(const record::NavState& a, const record::NavState& b) 
   const double dt = b.t - a.t;
   if (!(dt > 0.0)) return Eigen::Vector3d::Zero();
   return geo::rotation_vector(a.q_b_e.conjugate() * b.q_b_e) / dt;
+}
+
+const Eigen::Vector3d& PassingRate::at(const record::NavState& nav) {
+  if (previous_) {
+    held_ = !held_ && corrected_between(*previous_, nav);  // a body that shakes is corrected nowhere: never for long
+    if (!held_) rate_ = mean_rate(*previous_, nav);
+  }
+  previous_ = nav;
+  return rate_;
 }
 
 }  // namespace coast::study

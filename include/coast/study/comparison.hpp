@@ -5,6 +5,7 @@
 #include <optional>
 
 #include "coast/record/trajectory.hpp"
+#include "coast/study/interpolation.hpp"
 
 namespace coast::study {
 
@@ -73,6 +74,7 @@ class Comparison {
   Eigen::Vector3d lever_arm_b_;
   Sink sink_;
   std::optional<record::TrajectoryEpoch> previous_;
+  PassingRate rate_;
   std::size_t next_ = 0;  ///< first reference epoch not yet compared
   ErrorStatistics statistics_;
 };

@@ -8,7 +8,8 @@ namespace coast::study {
 
 /// State between two epochs at t in [a.t, b.t]: position by the cubic through both positions and velocities, velocity by that
 /// cubic's derivative blended to the ends, attitude along the shortest rotation. Without velocities position is linear.
-/// Position error below max|d4 r/dt4| dt^4 / 384.
+/// Position error below max|d4 r/dt4| dt^4 / 384. Where the update of a filter lies between the two, velocity is linear: the
+/// derivative of a step would be part of it.
 [[nodiscard]] record::NavState interpolate(const record::NavState& a, const record::NavState& b, geo::GpsTime t,
                                            bool has_velocity = true);
 
@@ -21,5 +22,21 @@ namespace coast::study {
                                         const Eigen::Vector3d& omega_eb_b);
 /// Mean rate against the Earth between two epochs, body axes, rad/s.
 [[nodiscard]] Eigen::Vector3d mean_rate(const record::NavState& a, const record::NavState& b);
+
+/// Whether the positions differ from what the velocities say by more than a jerk of 50 m/s^3 explains: an update of a filter
+/// lies between the two epochs, and differences over it are no motion.
+[[nodiscard]] bool corrected_between(const record::NavState& a, const record::NavState& b);
+
+/// Rate of a trajectory that goes by epoch by epoch; over an update of the filter the rate of the interval before it.
+class PassingRate {
+ public:
+  /// @return rad/s, body axes, against the Earth; zero at the first epoch
+  const Eigen::Vector3d& at(const record::NavState& nav);
+
+ private:
+  std::optional<record::NavState> previous_;
+  Eigen::Vector3d rate_ = Eigen::Vector3d::Zero();
+  bool held_ = false;
+};
 
 }  // namespace coast::study
