@@ -81,6 +81,7 @@ void PreparedMission::test_antenna() {
   constexpr double kLeastGain = 15.0;  // of the log-likelihood
   constexpr double kLeastTime = 3e-3;  // s: less moves a car by centimetres
   constexpr double kLeastArm = 0.03;   // m
+  constexpr double kLargestArm = 3.0;  // m, of a difference: a car's arm with its signs turned is two off
   if (!tested_.time_offset && !tested_.lever_arm) return;
   const auto late = [&](const AntennaFit& fit) {
     return std::abs(fit.time_offset_s) > std::max(kLeastTime, kSigmas * fit.time_offset_sd_s);
@@ -92,6 +93,12 @@ void PreparedMission::test_antenna() {
     return with.log_likelihood - without.log_likelihood > kLeastGain * with.excess;
   };
   AntennaFit found = fit_antenna(tested_);
+  if (found.lever_arm_m.lpNorm<Eigen::Infinity>() > kLargestArm) {  // something else is wrong, which an arm must not hide
+    tested_.lever_arm = false;
+    mission_->lever_arm_b = setup_.lever_arm_b;
+    setup_.filter.auxiliary.lever_arm_sd_m = 0.0;
+    found = fit_antenna(tested_);
+  }
   const AntennaFit time_alone = tested_.lever_arm ? fit_antenna({tested_.time_offset, false}) : found;
   const AntennaFit arm_alone = tested_.time_offset ? fit_antenna({false, tested_.lever_arm}) : found;
   const AntennaFit neither = fit_antenna({false, false});
