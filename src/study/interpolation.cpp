@@ -16,7 +16,7 @@ Eigen::Vector3d step_beyond_velocity(const record::NavState& a, const record::Na
 }  // namespace
 
 bool corrected_between(const record::NavState& a, const record::NavState& b) {
-  constexpr double kJerk = 50.0;     // m/s^3
+  constexpr double kJerk = 50.0;    // m/s^3
   constexpr double kDigits = 2e-9;  // m: rounding of coordinates from the centre of the Earth
   const double dt = b.t - a.t;
   return step_beyond_velocity(a, b).norm() > kJerk * dt * dt * dt / 12.0 + kDigits;
