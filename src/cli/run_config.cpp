@@ -203,8 +203,10 @@ void read_imu(const Node& imu, RunConfig& run, estimate::NoiseFitChoice& choice)
     throw imu.at("lever_arm_m")
         .error(fmt::format("a lever arm of {:.0f} m", run.setup.lever_arm_b.norm()), "metres from the IMU to the antenna",
                "Centimetres or millimetres? `accept: true` takes it as it is.");
+  // Asked for only where it stands there: a default in the resolved file would state it.
   run.setup.unstated.lever_arm = !imu.find("lever_arm_sd_m");
-  run.setup.filter.auxiliary.lever_arm_sd_m = imu.number_within("lever_arm_sd_m", 0.0, 0.0, 100.0);
+  if (!run.setup.unstated.lever_arm)
+    run.setup.filter.auxiliary.lever_arm_sd_m = imu.number_within("lever_arm_sd_m", 0.0, 0.0, 100.0);
   run.setup.high_order_compensation = imu.choice("compensation", {"two_sample", "chebyshev"}, 0) == 1;
   read_imu_noise(imu, run.setup, choice);
 }

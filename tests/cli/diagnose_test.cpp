@@ -44,7 +44,8 @@ fs::path wrong_lever_arm() {
   const auto from = text.find(key);
   const auto to = text.find(']', from);
   EXPECT_NE(to, std::string::npos) << text;
-  text.replace(from, to - from, fmt::format("{}0.3, {}, -1.1", key, -0.2 + kTooFarRight));
+  // As it is stated: `process` would find the arm by itself.
+  text.replace(from, to - from + 1, fmt::format("{}0.3, {}, -1.1]\n  lever_arm_sd_m: 0", key, -0.2 + kTooFarRight));
   write(city_drive() / "wrong.yaml", text);
   return city_drive() / "wrong.yaml";
 }
