@@ -27,7 +27,7 @@ void correct(Eigen::MatrixXd& B, const Secant& secant) {
 }
 
 /// Of each parameter, with all others known.
-Eigen::VectorXd sigmas(const Eigen::MatrixXd& information) {
+Eigen::VectorXd sigmas_of_each(const Eigen::MatrixXd& information) {
   constexpr double kLeast = 1.0;
   return information.diagonal().cwiseMax(kLeast).cwiseSqrt().cwiseInverse();
 }
@@ -132,7 +132,7 @@ namespace {
 Eigen::VectorXd slopes_with_curvature(const Likelihood& likelihood, SearchPoint& at) {
   constexpr double kShare = 0.03;  // of a sigma
   const Index n = at.theta.size();
-  const Eigen::VectorXd steps = kShare * sigmas(at.information);
+  const Eigen::VectorXd steps = kShare * sigmas_of_each(at.information);
   Eigen::MatrixXd information(n, n);
   Eigen::VectorXd slopes(n);
   for (Index i = 0; i < n; ++i) {
@@ -149,7 +149,7 @@ Eigen::VectorXd slopes_with_curvature(const Likelihood& likelihood, SearchPoint&
 Eigen::VectorXd slopes_by_values(const Likelihood& likelihood, const SearchPoint& at) {
   constexpr double kShare = 0.1;  // rounding of a value, 1e-5, and third derivatives, 0.1 a cubed sigma, are 2e-4 alike
   const Index n = at.theta.size();
-  const Eigen::VectorXd steps = kShare * sigmas(at.information);
+  const Eigen::VectorXd steps = kShare * sigmas_of_each(at.information);
   Eigen::VectorXd slopes(n);
   for (Index i = 0; i < n; ++i) {
     const Eigen::VectorXd step = steps(i) * Eigen::VectorXd::Unit(n, i);
