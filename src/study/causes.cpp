@@ -7,7 +7,6 @@
 #include <array>
 #include <cmath>
 #include <functional>
-#include <iterator>
 #include <limits>
 #include <optional>
 
@@ -22,6 +21,10 @@ constexpr double kSeconds = 120.0;
 constexpr double kBeforeMotion = 20.0;
 constexpr double kMoved = 10.0;                // m
 constexpr double kTimeSd = 0.5, kArmSd = 1.0;  // s, m: left to the data
+
+// Each hypothesis costs several passes: what turns and accelerates a vehicle is seen at these rates too.
+constexpr double kImuInterval = 0.02;  // s, at least: increments are added up to it
+constexpr double kFixInterval = 0.45;  // s, more
 
 /// What a hypothesis changes, and how it is told.
 struct Hypothesis {
@@ -200,6 +203,21 @@ Cause noise_cause(double factor, double gain) {
           "`gnss: {noise: estimated}`", gain};
 }
 
+// A gap stays a gap: the next sample is added only where it follows at once.
+void add_thinned(const record::ImuSample& sample, std::vector<record::ImuSample>& thinned) {
+  constexpr double kFollows = 1e-4;  // s
+  if (thinned.empty() || thinned.back().dt + sample.dt > kImuInterval + kFollows ||
+      std::abs(sample.t - sample.dt - thinned.back().t) > kFollows) {
+    thinned.push_back(sample);
+    return;
+  }
+  record::ImuSample& last = thinned.back();
+  last.t = sample.t;
+  last.dt += sample.dt;
+  last.dtheta += sample.dtheta;
+  last.dv += sample.dv;
+}
+
 }  // namespace
 
 Excerpt excerpt_of(const record::ImuRecording& imu, const record::GnssRecording& gnss) {
@@ -211,10 +229,13 @@ Excerpt excerpt_of(const record::ImuRecording& imu, const record::GnssRecording&
   const auto inside = [&](const auto& record) { return record.t >= from && record.t <= to; };
   Excerpt excerpt;
   excerpt.imu.source = imu.source;
-  excerpt.imu.rate_hz = imu.rate_hz;
   excerpt.gnss.source = gnss.source;
-  std::ranges::copy_if(imu.samples, std::back_inserter(excerpt.imu.samples), inside);
-  std::ranges::copy_if(gnss.fixes, std::back_inserter(excerpt.gnss.fixes), inside);
+  for (const record::ImuSample& s : imu.samples)
+    if (inside(s)) add_thinned(s, excerpt.imu.samples);
+  excerpt.imu.rate_hz = std::min(imu.rate_hz, 1.0 / kImuInterval);
+  for (const record::GnssFix& fix : fixes)
+    if (inside(fix) && (excerpt.gnss.fixes.empty() || fix.t - excerpt.gnss.fixes.back().t > kFixInterval))
+      excerpt.gnss.fixes.push_back(fix);
   return excerpt;
 }
 
