@@ -102,28 +102,50 @@ std::vector<Hypothesis> catalogue() {
   return all;
 }
 
-void note_antenna(const estimate::FilterState& last, const estimate::StateLayout& layout, const Setup& setup, Fit& fit) {
+void note_antenna(const estimate::FilterState& last, const estimate::StateLayout& layout, const estimate::Mission& mission,
+                  Fit& fit) {
   if (const auto at = layout.time_offset()) {
-    fit.time_offset_s = setup.time_offset_s + last.x(*at);
+    fit.time_offset_s = mission.time_offset_s + last.x(*at);
     fit.time_offset_sd_s = fit.factor * std::sqrt(last.P(*at, *at));
   }
   if (const auto at = layout.lever_arm()) {
-    fit.lever_arm_m = setup.lever_arm_b + last.x.segment<3>(*at);
+    fit.lever_arm_m = mission.lever_arm_b + last.x.segment<3>(*at);
     fit.lever_arm_sd_m = fit.factor * last.P.diagonal().segment<3>(*at).cwiseSqrt();
   }
+}
+
+// Nothing adapted.
+Setup as_described(const Setup& stated) {
+  Setup setup = stated;
+  setup.unstated = {};
+  setup.noise_fit.reset();
+  setup.start.reset();
+  setup.carrier.reset();
+  setup.refine_before.reset();
+  setup.fit_before.reset();
+  setup.filter.gate_probability = 0.0;
+  return setup;
+}
+
+// Where the start is found by them too, each fit takes ten passes more: that is left to the hypotheses that are about them.
+estimate::FilterOptions antenna_left_to_data(estimate::FilterOptions options, const Setup& stated) {
+  estimate::AuxiliaryStates& auxiliary = options.auxiliary;
+  if (stated.unstated.time_offset && auxiliary.time_offset_sd_s == 0.0) auxiliary.time_offset_sd_s = kTimeSd;
+  if (stated.unstated.lever_arm && auxiliary.lever_arm_sd_m == 0.0) auxiliary.lever_arm_sd_m = kArmSd;
+  return options;
 }
 
 /// Under a hypothesis (none: as described) and with the white noise of the IMU times `noise`.
 Fit fit(const Excerpt& excerpt, const Setup& stated, const Hypothesis* hypothesis, double noise) {
   Excerpt changed = excerpt;
-  Setup setup = stated;
+  Setup setup = as_described(stated);
   if (hypothesis != nullptr) hypothesis->apply(changed, setup);
   for (const noise::Sensor sensor : {noise::Sensor::kGyro, noise::Sensor::kAccel})
     setup.model = setup.model.with_white_noise_scaled(sensor, noise);
   Fit result;
   try {
     const PreparedMission mission(std::move(changed.imu), std::move(changed.gnss), setup, {});
-    const estimate::ForwardFilter filter(mission.mission(), mission.model(), mission.options());
+    const estimate::ForwardFilter filter(mission.mission(), mission.model(), antenna_left_to_data(mission.options(), stated));
     const estimate::FilterResult run = filter.run(mission.start_state(filter), {});
     double nis = 0.0, dof = 0.0;
     for (const estimate::InnovationRecord& r : run.innovations) {
@@ -133,7 +155,7 @@ Fit fit(const Excerpt& excerpt, const Setup& stated, const Hypothesis* hypothesi
     if (!(dof > 0.0) || !std::isfinite(run.log_likelihood)) return result;
     result.factor = std::sqrt(nis / dof);
     result.log_likelihood = run.log_likelihood + 0.5 * nis - 0.5 * dof * (1.0 + std::log(nis / dof));
-    note_antenna(run.last, filter.layout(), mission.setup(), result);
+    note_antenna(run.last, filter.layout(), mission.mission(), result);
   } catch (const NumericalError&) {  // not even a start: not likely
   } catch (const InputError&) {      // no common time under this shift
   }
@@ -178,22 +200,6 @@ void run(const Excerpt& excerpt, const Setup& setup, std::vector<Profile>& profi
     auto& [profile, i] = missing[k];
     profile->fits[i] = fit(excerpt, setup, profile->hypothesis, profile->noise[i]);
   });
-}
-
-// Nothing adapted, but time offset and lever arm free where they are left to the data.
-Setup as_described(const Setup& stated) {
-  Setup setup = stated;
-  estimate::AuxiliaryStates& auxiliary = setup.filter.auxiliary;
-  if (stated.unstated.time_offset && auxiliary.time_offset_sd_s == 0.0) auxiliary.time_offset_sd_s = kTimeSd;
-  if (stated.unstated.lever_arm && auxiliary.lever_arm_sd_m == 0.0) auxiliary.lever_arm_sd_m = kArmSd;
-  setup.unstated = {};
-  setup.noise_fit.reset();
-  setup.start.reset();
-  setup.carrier.reset();
-  setup.refine_before.reset();
-  setup.fit_before.reset();
-  setup.filter.gate_probability = 0.0;
-  return setup;
 }
 
 Cause noise_cause(double factor, double gain) {
@@ -244,15 +250,14 @@ std::vector<Cause> rank_causes(const Excerpt& excerpt, const Setup& stated) {
   constexpr double kFits = 5.0;  // on the sigmas
   constexpr std::ptrdiff_t kLikely = 3;
   if (!stated.model.members().empty()) return {};  // an excerpt has no members
-  const Setup setup = as_described(stated);
   const std::vector<Hypothesis> hypotheses = catalogue();
   std::vector<Profile> profiles{{nullptr, {10.0, 0.03, 0.1, 0.3, 1.0, 3.0, 30.0, 100.0}, {}}};
   for (const Hypothesis& hypothesis : hypotheses) profiles.push_back({&hypothesis, {10.0}, {}});
-  run(excerpt, setup, profiles);
+  run(excerpt, stated, profiles);
   const auto less_likely = [](const Profile& a, const Profile& b) { return a.log_likelihood() > b.log_likelihood(); };
   std::sort(profiles.begin() + 1, profiles.end(), less_likely);
   for (auto p = profiles.begin() + 1; p < profiles.begin() + 1 + kLikely; ++p) p->noise = {10.0, 1.0, 3.0, 30.0, 100.0};
-  run(excerpt, setup, profiles);
+  run(excerpt, stated, profiles);
   std::sort(profiles.begin() + 1, profiles.end(), less_likely);
 
   const Profile& described = profiles.front();

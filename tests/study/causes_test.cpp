@@ -54,17 +54,16 @@ TEST_P(ReadWrongly, IsNamedFirst) {
   EXPECT_FALSE(causes.front().remedy.empty());
 }
 
-INSTANTIATE_TEST_SUITE_P(
-    Kinds, ReadWrongly,
-    testing::Values(Mistake{"sign_x", "the sign of the gyro about body x", signs(-1, 1, 1), 0.0},
-                    Mistake{"sign_z", "the sign of the gyro about body z", signs(1, 1, -1), 0.0},
-                    Mistake{"x_y", "body x and y are exchanged", exchanged(0, 1), 0.0},
-                    Mistake{"y_z", "body y and z are exchanged", exchanged(1, 2), 0.0},
-                    Mistake{"all_signs", "all signs of the gyro", signs(-1, -1, -1), 0.0},
-                    Mistake{"turned_about_z", "by 180 deg about body z", signs(-1, -1, 1), 0.0},
-                    Mistake{"gyro_degrees", "the gyro is in deg/s", signs(1, 1, 1) / geo::kDegree, 0.0},
-                    Mistake{"utc", "the time offset is -18.0", signs(1, 1, 1), 18.0}),
-    [](const auto& kind) { return kind.param.name; });
+INSTANTIATE_TEST_SUITE_P(Kinds, ReadWrongly,
+                         testing::Values(Mistake{"sign_x", "the sign of the gyro about body x", signs(-1, 1, 1), 0.0},
+                                         Mistake{"sign_z", "the sign of the gyro about body z", signs(1, 1, -1), 0.0},
+                                         Mistake{"x_y", "body x and y are exchanged", exchanged(0, 1), 0.0},
+                                         Mistake{"y_z", "body y and z are exchanged", exchanged(1, 2), 0.0},
+                                         Mistake{"all_signs", "all signs of the gyro", signs(-1, -1, -1), 0.0},
+                                         Mistake{"turned_about_z", "by 180 deg about body z", signs(-1, -1, 1), 0.0},
+                                         Mistake{"gyro_degrees", "the gyro is in deg/s", signs(1, 1, 1) / geo::kDegree, 0.0},
+                                         Mistake{"utc", "the time offset is -1", signs(1, 1, 1), 18.0}),
+                         [](const auto& kind) { return kind.param.name; });
 
 TEST(Causes, AreNoneWhereTheRecordingIsReadRightly) {
   for (const Cause& cause : causes_of({"", "", signs(1, 1, 1), 0.0})) ADD_FAILURE() << cause.what << ' ' << cause.gain;
