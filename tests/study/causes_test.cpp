@@ -19,8 +19,8 @@ struct Mistake {
   Eigen::Matrix3d gyro;
   double late_s;
 };
-void PrintTo(const Mistake& mistake, std::ostream* out) {
-  *out << mistake.name;
+std::ostream& operator<<(std::ostream& out, const Mistake& mistake) {
+  return out << mistake.name;
 }
 
 Eigen::Matrix3d signs(double x, double y, double z) {
