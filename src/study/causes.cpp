@@ -23,8 +23,8 @@ constexpr double kMoved = 10.0;                // m
 constexpr double kTimeSd = 0.5, kArmSd = 1.0;  // s, m: left to the data
 
 // Each hypothesis costs several passes: what turns and accelerates a vehicle is seen at these rates too.
-constexpr double kImuInterval = 0.02;  // s, at least: increments are added up to it
-constexpr double kFixInterval = 0.45;  // s, more
+constexpr double kImuInterval = 0.02;  // s: as many increments are added up as it holds
+constexpr double kFixInterval = 0.45;  // s, at least
 
 /// What a hypothesis changes, and how it is told.
 struct Hypothesis {
@@ -210,9 +210,9 @@ Cause noise_cause(double factor, double gain) {
 }
 
 // A gap stays a gap: the next sample is added only where it follows at once.
-void add_thinned(const record::ImuSample& sample, std::vector<record::ImuSample>& thinned) {
+void add_thinned(const record::ImuSample& sample, double longest, std::vector<record::ImuSample>& thinned) {
   constexpr double kFollows = 1e-4;  // s
-  if (thinned.empty() || thinned.back().dt + sample.dt > kImuInterval + kFollows ||
+  if (thinned.empty() || thinned.back().dt + sample.dt > longest ||
       std::abs(sample.t - sample.dt - thinned.back().t) > kFollows) {
     thinned.push_back(sample);
     return;
@@ -236,11 +236,13 @@ Excerpt excerpt_of(const record::ImuRecording& imu, const record::GnssRecording&
   Excerpt excerpt;
   excerpt.imu.source = imu.source;
   excerpt.gnss.source = gnss.source;
+  constexpr double kRounding = 0.01;
+  const double together = std::max(1.0, std::floor(kImuInterval * imu.rate_hz + kRounding));
+  excerpt.imu.rate_hz = imu.rate_hz / together;
   for (const record::ImuSample& s : imu.samples)
-    if (inside(s)) add_thinned(s, excerpt.imu.samples);
-  excerpt.imu.rate_hz = std::min(imu.rate_hz, 1.0 / kImuInterval);
+    if (inside(s)) add_thinned(s, (together + 0.5) / imu.rate_hz, excerpt.imu.samples);
   for (const record::GnssFix& fix : fixes)
-    if (inside(fix) && (excerpt.gnss.fixes.empty() || fix.t - excerpt.gnss.fixes.back().t > kFixInterval))
+    if (inside(fix) && (excerpt.gnss.fixes.empty() || fix.t - excerpt.gnss.fixes.back().t >= kFixInterval))
       excerpt.gnss.fixes.push_back(fix);
   return excerpt;
 }

@@ -2,7 +2,6 @@
 
 #include "coast/study/causes.hpp"
 
-#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <ostream>
@@ -62,7 +61,7 @@ INSTANTIATE_TEST_SUITE_P(Kinds, ReadWrongly,
                                          Mistake{"all_signs", "all signs of the gyro", signs(-1, -1, -1), 0.0},
                                          Mistake{"turned_about_z", "by 180 deg about body z", signs(-1, -1, 1), 0.0},
                                          Mistake{"gyro_degrees", "the gyro is in deg/s", signs(1, 1, 1) / geo::kDegree, 0.0},
-                                         Mistake{"utc", "the time offset is -1", signs(1, 1, 1), 18.0}),
+                                         Mistake{"leap_seconds", "the time offset is -18.2", signs(1, 1, 1), 18.25}),
                          [](const auto& kind) { return kind.param.name; });
 
 TEST(Causes, AreNoneWhereTheRecordingIsReadRightly) {
