@@ -269,10 +269,12 @@ void array_study(const std::filesystem::path& study_yaml, const CommonOptions& o
   const char* kind = std::array{"models", "merges", "outages", "defects"}[static_cast<std::size_t>(config.kind)];
   StudyPart part;
   try {
+    line.show("simulating", 0.0);
     part = run_study(config, [&](double share) { line.show("simulating", share); });
   } catch (const std::invalid_argument& error) {
     throw config.root.error(error.what(), "a study that can be run");
   }
+  line.show("writing", 0.0);
   Json json = {{"schema", "coast.array_study_result/1"}, {"kind", kind}};
   json[kind] = std::move(part.json);
   report::Page page;

@@ -47,13 +47,14 @@ std::vector<diagnose::MissionInput> from_scenario(const config::Node& root, cons
   return inputs;
 }
 
-std::vector<diagnose::MissionInput> simulated_inputs(const std::filesystem::path& file, const study::Setup& as, int count) {
+std::vector<diagnose::MissionInput> simulated_inputs(const std::filesystem::path& file, const study::Setup& as, int count,
+                                                     const study::Progress& progress) {
   if (file.empty()) return {};
   const config::Node root = io::load_yaml(file);
   if (root.text("schema", "coast.run/1").starts_with("coast.scenario/"))
     return from_scenario(root, as, static_cast<std::size_t>(std::max(1, count)));
   const RunConfig config = read_run_config(file);
-  Recordings recordings = load(config, {});
+  Recordings recordings = load(config, progress);
   return {recorded_input(file, config, recordings)};
 }
 
@@ -83,9 +84,9 @@ std::string of_another_drive(const diagnose::MissionInput& recording, const diag
 
 void diagnose(const std::filesystem::path& run_yaml, const DiagnoseOptions& choice, const CommonOptions& options) {
   ProgressLine line(options.quiet);
-  const study::Progress progress = [&line](const char* what, double fraction) { line.show(what, fraction); };
+  const study::Progress progress = line.stages();
   const RunConfig config = read_run_config(run_yaml);
-  Recordings recordings = load(config, [&line](double share) { line.show("solving GNSS positions", share); });
+  Recordings recordings = load(config, progress);
   const std::filesystem::path out =
       output_folder(run_yaml, options.out,
                     {"diagnosis.json", "run.diagnosed.yaml", "error_model.diagnosed.yaml", "report.json", "report.html"});
@@ -94,7 +95,8 @@ void diagnose(const std::filesystem::path& run_yaml, const DiagnoseOptions& choi
   refuse_wrong_axes(config, recordings);
   refuse_wrong_units(config, recordings);
   const diagnose::MissionInput input = recorded_input(run_yaml, config, recordings);
-  const std::vector<diagnose::MissionInput> simulations = simulated_inputs(choice.simulation, input.setup, choice.twins);
+  const std::vector<diagnose::MissionInput> simulations =
+      simulated_inputs(choice.simulation, input.setup, choice.twins, progress);
   std::optional<SimulationCheck> simulation;
   if (!simulations.empty())
     simulation = SimulationCheck{choice.simulation.string(), diagnose::diagnose(simulations.front(), {.twins = 0}, progress),
@@ -106,7 +108,7 @@ void diagnose(const std::filesystem::path& run_yaml, const DiagnoseOptions& choi
   if (const std::optional<double> shift = recordings.time_shift_s) search.time_offset_s = -*shift;
   if (recordings.reference) search.reference = {&*recordings.reference, config.reference_lever_arm_b};
   const diagnose::Diagnosis diagnosis = diagnose::diagnose(input, search, progress, simulations);
-  line.clear();
+  line.show("writing", 0.0);
   const std::string error_model = "error_model.diagnosed.yaml";  // beside the run, so that both can be moved
   const std::string diagnosed = diagnosed_yaml(config.root.resolved_yaml(), diagnosis, error_model);
   if (changes_error_model(diagnosis))
@@ -118,6 +120,7 @@ void diagnose(const std::filesystem::path& run_yaml, const DiagnoseOptions& choi
   const report::Page page = diagnosis_page(run_yaml.filename().string(), diagnosis, diagnosed, simulation);
   io::write_text(out / "report.json", report::to_json(page));
   io::write_text(out / "report.html", report::render(page));
+  line.clear();
   if (!options.quiet)
     fmt::print("{}the run with it: {}\nreport: {}\n", diagnosis_text(diagnosis, simulation),
                (out / "run.diagnosed.yaml").string(), (out / "report.html").string());

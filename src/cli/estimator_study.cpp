@@ -1,7 +1,5 @@
 #include <fmt/format.h>
 
-#include <mutex>
-
 #include "coast/io/writers.hpp"
 #include "coast/report/render.hpp"
 #include "commands.hpp"
@@ -17,17 +15,16 @@ void estimator_study(const std::filesystem::path& study_yaml, const CommonOption
   const std::filesystem::path out =
       output_folder(study_yaml, options.out, {"estimator_study.json", "report.json", "report.html"});
   EstimatorStudyOutcome outcome;
-  std::mutex mutex;
-  outcome.result = noise::run_estimator_study(config.study, [&](double fraction) {
-    const std::scoped_lock lock(mutex);
-    line.show("simulating and estimating runs", fraction);
-  });
+  const auto runs = [&line](double fraction) { line.show("simulating and estimating runs", fraction); };
+  runs(0.0);  // the first may take minutes
+  outcome.result = noise::run_estimator_study(config.study, runs);
   outcome.summaries = noise::summarise(config.study, outcome.result);
-  line.clear();
+  line.show("writing", 0.0);
   const report::Page page = estimator_study_page(config, outcome);
   io::write_text(out / "estimator_study.json", estimator_study_json(config, outcome));
   io::write_text(out / "report.json", report::to_json(page));
   io::write_text(out / "report.html", report::render(page));
+  line.clear();
   if (!options.quiet) fmt::print("{}report: {}\n", estimator_study_text(config, outcome), (out / "report.html").string());
 }
 

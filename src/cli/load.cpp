@@ -34,8 +34,8 @@ void check_leap_seconds(const io::TimeOptions& time, const std::string& source, 
 }
 
 // Positions from the rover's and the base's observations; what was found of them is told like the rest.
-void read_with_ppk(const RunConfig& config, const std::function<void(double)>& progress, Recordings& recordings) {
-  PpkResult ppk = run_ppk(*config.ppk, progress);
+void read_with_ppk(const RunConfig& config, const study::Progress& progress, Recordings& recordings) {
+  PpkResult ppk = run_ppk(*config.ppk, [&progress](double share) { progress("solving GNSS positions", share); });
   recordings.gnss = ppk.fixes;
   recordings.gnss.events = ppk.events;
   recordings.inspection = ppk_sentences(ppk);
@@ -51,10 +51,11 @@ void read_with_ppk(const RunConfig& config, const std::function<void(double)>& p
 
 }  // namespace
 
-Recordings load(const RunConfig& config, const std::function<void(double)>& ppk_progress) {
+Recordings load(const RunConfig& config, const study::Progress& progress) {
+  progress("reading", 0.0);
   Recordings recordings;
   if (config.ppk) {
-    read_with_ppk(config, ppk_progress, recordings);
+    read_with_ppk(config, progress, recordings);
   } else if (config.gnss.time.lacks_week() && !config.imu.time.lacks_week()) {
     recordings.imu = io::read_imu(config.imu);
     recordings.gnss = io::read_gnss(config.gnss, recordings.imu.samples.front().t);

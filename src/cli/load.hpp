@@ -2,7 +2,6 @@
 // The recordings that a run.yaml names.
 
 #include <filesystem>
-#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
@@ -25,8 +24,7 @@ struct Recordings {
 };
 
 /// Reads all files; a week that one of them does not state comes from the other.
-/// @param ppk_progress  told how far the positions are where they are solved from RINEX, 0 to 1
-[[nodiscard]] Recordings load(const RunConfig& config, const std::function<void(double)>& ppk_progress = {});
+[[nodiscard]] Recordings load(const RunConfig& config, const study::Progress& progress);
 /// First thing on the terminal: what was understood, and the warnings.
 void print_inspection(const Recordings& recordings, bool quiet);
 /// Nothing sensible follows where gravity points the wrong way at rest.

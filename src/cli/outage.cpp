@@ -11,7 +11,7 @@ namespace coast::cli {
 
 void outage(const std::filesystem::path& study_yaml, const CommonOptions& options) {
   ProgressLine line(options.quiet);
-  const study::Progress progress = [&line](const char* what, double fraction) { line.show(what, fraction); };
+  const study::Progress progress = line.stages();
   const StudyConfig config = read_study(study_yaml);
   const std::filesystem::path out =
       output_folder(study_yaml, options.out, {"outage.json", "outages.csv", "report.json", "report.html"});
@@ -28,7 +28,7 @@ void outage(const std::filesystem::path& study_yaml, const CommonOptions& option
   const auto* sweep = std::get_if<SweepStudy>(&config);
   const OutageStudy study =
       sweep != nullptr ? run_sweep(*sweep, journal, progress) : run_seeds(std::get<EnsembleStudy>(config), journal, progress);
-  line.clear();
+  line.show("writing", 0.0);
 
   report::Page page;
   page.title = "Outage study";
@@ -41,6 +41,7 @@ void outage(const std::filesystem::path& study_yaml, const CommonOptions& option
   io::write_text(out / "report.json", report::to_json(page));
   io::write_text(out / "report.html", report::render(page));
   file->remove();
+  line.clear();
   if (!options.quiet) fmt::print("report: {}\n", (out / "report.html").string());
 }
 

@@ -67,9 +67,10 @@ std::uint64_t digest_of(const EnsembleStudy& config) {
 }
 
 /// @param recordings  without the effects that the run names, afterwards
-study::Setup setup_with(const SweepStudy& config, const SweepStudy::Model& model, Recordings& recordings) {
+study::Setup setup_with(const SweepStudy& config, const SweepStudy::Model& model, Recordings& recordings,
+                        const study::Progress& progress) {
   study::Setup setup = setup_of(config.run, recordings, config.sweep);
-  take_out_effects(config.run, recordings, setup, {});
+  take_out_effects(config.run, recordings, setup, progress);
   setup.fit_before = setup.refine_before;  // in situ, on a part that the gaps do not use
   setup.model = model.named.model;
   if (!model.noise_estimated) return setup;
@@ -112,9 +113,9 @@ void Sweep::begin(const Recordings& recordings, double mission_s) {
 }
 
 void Sweep::run(const SweepStudy::Model& model) {
-  Recordings recordings = load(config_.run);
+  Recordings recordings = load(config_.run, progress_);
   if (!journal_) journal_ = open_(digest_of(config_, recordings));
-  study::Setup setup = setup_with(config_, model, recordings);
+  study::Setup setup = setup_with(config_, model, recordings, progress_);
   const study::PreparedMission mission(std::move(recordings.imu), std::move(recordings.gnss), std::move(setup), progress_);
   if (study_.result.groups.empty()) begin(recordings, mission.mission().imu.samples.back().t - mission.start().nav.t);
   study_.result.runs.push_back({"", model.named.name, {}});
@@ -177,8 +178,9 @@ OutageStudy run_seeds(const EnsembleStudy& config, const OpenJournal& journal, c
       "Simulated: the motion, GNSS and sensor errors of {}, with the errors of the IMU drawn from an error model, seeds {} to "
       "{}. Each recording is processed with every error model, GNSS and IMU alone, against the simulated truth.",
       config.scenario.filename().string(), plan.first_seed, plan.first_seed + plan.seeds - 1);
-  study.result = study::run_ensemble(
-      plan, [&](double fraction) { progress("simulating and processing seeds", fraction); }, journal(digest_of(config)));
+  const auto seeds = [&](double fraction) { progress("simulating and processing seeds", fraction); };
+  seeds(0.0);  // the first may take minutes
+  study.result = study::run_ensemble(plan, seeds, journal(digest_of(config)));
   for (const study::EnsembleCase& which : plan.cases)
     for (std::size_t filter = 0; filter < which.filters.size(); ++filter) {
       geo::Psd density;

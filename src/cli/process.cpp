@@ -315,7 +315,7 @@ void ProcessRun::study_sweep() {
   const std::vector<study::Outage> outages = study::outages_of(*config_.sweep, result_.start, result_.end);
   std::size_t done = 0;
   result_.sweep = study::run_outages(mission_, knots, {truth, arm}, outages, [&](std::size_t, const study::OutageResult&) {
-    if (progress_) progress_("studying outages", static_cast<double>(++done) / static_cast<double>(outages.size()));
+    progress_("studying outages", static_cast<double>(++done) / static_cast<double>(outages.size()));
   });
 }
 
@@ -361,6 +361,7 @@ void ProcessRun::judge() {
 }
 
 void ProcessRun::rank_causes() {
+  progress_("looking for the cause", 0.0);
   result_.verdict.causes = study::rank_causes(excerpt_, setup_);
   if (const std::string cause = told(result_.verdict.causes); !cause.empty()) result_.verdict.likely_cause = cause;
 }
@@ -410,6 +411,7 @@ void ProcessRun::note_estimates() const {
 }
 
 std::string ProcessRun::write_results() {
+  progress_("writing", 0.0);
   note_estimates();
   const std::string resolved = config_.root.resolved_yaml();
   io::write_text(out_ / "run.resolved.yaml", resolved);
@@ -457,15 +459,13 @@ std::unique_ptr<ProcessRun> prepare(const RunConfig& config, Recordings recordin
 
 void process(const std::filesystem::path& run_yaml, const CommonOptions& options) {
   ProgressLine line(options.quiet);
-  const study::Progress progress = [&line](const char* what, double fraction) { line.show(what, fraction); };
-
+  const study::Progress progress = line.stages();
   const RunConfig config = read_run_config(run_yaml);
-  Recordings recordings = load(config, [&line](double share) { line.show("solving GNSS positions", share); });
+  Recordings recordings = load(config, progress);
   const std::filesystem::path out = output_folder(run_yaml, options.out,
                                                   {"forward.nav", "trajectory.nav", "trajectory.csv", "run.resolved.yaml",
                                                    "summary.json", "innovations.csv", "report.json", "report.html"});
   line.clear();
-
   study::Setup setup = setup_of(config, recordings, config.sweep);
   setup.unstated = config.setup.unstated;
   leave_time_to_the_filter(config, recordings, setup);

@@ -1,28 +1,51 @@
 #pragma once
 
 #include <chrono>
+#include <condition_variable>
+#include <functional>
+#include <mutex>
+#include <set>
 #include <string>
+#include <thread>
 
 namespace coast::cli {
 
-/// One line on the terminal that is rewritten: what is being done, how far, time left. Silent where standard error is no
-/// terminal or `quiet` is set.
+/// Tells on standard error what is being done, how far it is and the time left of that stage; silent if `quiet` is set.
+/// On a terminal it is one line that is rewritten. Elsewhere (a file, a pipe) it is a line when a stage begins for the first
+/// time, and a line each `every` while the job lasts, also through a step that does not call. Threads may call together.
 class ProgressLine {
  public:
-  explicit ProgressLine(bool quiet);
+  explicit ProgressLine(bool quiet, std::chrono::milliseconds every = std::chrono::seconds(30));
   ~ProgressLine();
   ProgressLine(const ProgressLine&) = delete;
   ProgressLine& operator=(const ProgressLine&) = delete;
+  /// @param fraction  done of this stage, 0 to 1; 0 where it is not known: then no time left is told
   void show(const char* what, double fraction);
-  /// Removes the line, so that other text can be printed.
+  /// `show`, for those that do not know this class; not beyond its life.
+  [[nodiscard]] std::function<void(const char*, double)> stages();
+  /// Removes the line of a terminal, so that other text can be printed.
   void clear();
 
  private:
+  using Clock = std::chrono::steady_clock;
+
+  void rewrite();
+  void tell_now();
+  void tell_regularly(const std::stop_token& stop, std::chrono::milliseconds every);
+  [[nodiscard]] std::string standing() const;
+
   bool enabled_;
-  std::string what_;
-  std::chrono::steady_clock::time_point since_;
-  std::chrono::steady_clock::time_point shown_;
-  std::size_t width_ = 0;
+  bool terminal_;
+  std::mutex mutex_;
+  std::string what_ = "starting";
+  double fraction_ = 0.0;
+  Clock::time_point begun_ = Clock::now();
+  Clock::time_point since_;  ///< start of the stage
+  Clock::time_point told_;
+  std::size_t width_ = 0;  ///< of the line on the terminal
+  std::set<std::string> begun_stages_;
+  std::condition_variable_any stopped_;
+  std::jthread regular_;  ///< last, so that it ends before what it uses
 };
 
 }  // namespace coast::cli

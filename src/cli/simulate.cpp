@@ -7,6 +7,7 @@
 #include "coast/simulate/scenario.hpp"
 #include "commands.hpp"
 #include "load.hpp"
+#include "progress.hpp"
 
 namespace coast::cli {
 
@@ -98,6 +99,7 @@ std::vector<std::string> files_of(const simulate::Scenario& scenario) {
 }  // namespace
 
 void simulate(const std::filesystem::path& scenario_yaml, std::optional<std::uint64_t> seed, const CommonOptions& options) {
+  ProgressLine line(options.quiet);
   coast::simulate::Scenario scenario = coast::simulate::Scenario::from(
       io::load_yaml(scenario_yaml), [](const std::filesystem::path& file) { return io::load_yaml(file); });
   if (seed) scenario.seed = *seed;
@@ -106,7 +108,9 @@ void simulate(const std::filesystem::path& scenario_yaml, std::optional<std::uin
                       "The recording would have no run.yaml that processes it."});
   const std::filesystem::path out = output_folder(scenario_yaml, options.out, files_of(scenario));
   const auto threads = tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism);
+  line.show("simulating", 0.0);
   const coast::simulate::SimulatedMission mission = coast::simulate::simulate(scenario, static_cast<int>(threads));
+  line.show("writing", 0.0);
   io::write_imu_csv(out / "imu.csv", mission.imu);
   io::write_gnss_pos(out / "gnss.pos", mission.gnss);
   const auto truth = io::make_nav_writer(out / "truth.nav");
@@ -114,8 +118,12 @@ void simulate(const std::filesystem::path& scenario_yaml, std::optional<std::uin
   truth->close();
   io::write_text(out / "error_model.yaml", scenario.error_model->yaml());
   io::write_text(out / "run.yaml", run_yaml(scenario, mission, positions_yaml(scenario)));
-  if (scenario.observations) write_observations(scenario, mission, out);
+  if (scenario.observations) {
+    line.show("simulating observations", 0.0);
+    write_observations(scenario, mission, out);
+  }
   write_array(scenario, out, static_cast<int>(threads));
+  line.clear();
   if (!options.quiet)
     fmt::print("{} IMU samples, {} fixes; process them with\n  coast process {}\n", mission.imu.samples.size(),
                mission.gnss.fixes.size(), (out / "run.yaml").string());

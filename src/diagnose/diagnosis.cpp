@@ -138,7 +138,7 @@ std::size_t try_all_constant(Searched& best) {
 
 /// The figures of many recordings, on all threads; those by which the filter breaks down are left out.
 std::vector<std::vector<Statistic>> figures_of(std::size_t count, const std::function<MissionInput(std::size_t)>& recording,
-                                               std::uint64_t seed, const study::Progress& progress) {
+                                               std::uint64_t seed, const std::function<void(double)>& progress) {
   std::vector<std::vector<Statistic>> figures(count);
   std::mutex telling;  // one at a time
   std::size_t done = 0;
@@ -150,7 +150,7 @@ std::vector<std::vector<Statistic>> figures_of(std::size_t count, const std::fun
     }
     const std::lock_guard lock(telling);
     ++done;
-    if (progress) progress("running twins", static_cast<double>(done) / static_cast<double>(count));
+    progress(static_cast<double>(done) / static_cast<double>(count));
   });
   std::erase_if(figures, [](const std::vector<Statistic>& one) { return one.empty(); });
   return figures;
@@ -162,7 +162,7 @@ Diagnosis diagnose(const MissionInput& input, const DiagnosisOptions& options, c
                    const std::vector<MissionInput>& simulations) {
   const auto begin = [&](Order order) { return Searched{std::make_unique<Search>(input, options, order, progress)}; };
   const auto twins = static_cast<std::size_t>(std::max(0, options.twins));
-  const auto compared = [&](const Search& search, const std::vector<MissionInput>& given) {
+  const auto compared = [&](const char* stage, const Search& search, const std::vector<MissionInput>& given) {
     const MissionInput modelled = search.modelled();
     const auto recording = [&](std::size_t i) {
       if (!given.empty()) return given[i];
@@ -171,12 +171,16 @@ Diagnosis diagnose(const MissionInput& input, const DiagnosisOptions& options, c
       one.setup.start_sensor_errors = input.setup.start_sensor_errors;
       return one;
     };
+    const auto tell = [&](double done) {
+      if (progress) progress(stage, done);
+    };
+    tell(0.0);
     return against(statistics_of(search.run(), search.examined()),
-                   figures_of(given.empty() ? twins : given.size(), recording, options.seed, progress));
+                   figures_of(given.empty() ? twins : given.size(), recording, options.seed, tell));
   };
   Searched best = begin(Order::kNoiseFirst);
   std::vector<TwinStatistic> before, after;
-  if (twins > 0 || !simulations.empty()) before = compared(*best.search, simulations);
+  if (twins > 0 || !simulations.empty()) before = compared("running twins of the stated model", *best.search, simulations);
   search_to_the_end(best);
   std::size_t further_runs = 0;
   if (best.search->has_taken_noise()) {
@@ -188,7 +192,8 @@ Diagnosis diagnose(const MissionInput& input, const DiagnosisOptions& options, c
   }
   further_runs += try_all_lasting(best);
   further_runs += try_all_constant(best);
-  if (twins > 0 && best.search->has_found_anything()) after = compared(*best.search, {});
+  if (twins > 0 && best.search->has_found_anything())
+    after = compared("running twins of the diagnosed model", *best.search, {});
   std::optional<ReferenceOffset> offset;
   if (options.reference) offset = offset_from(*options.reference, best.search->run().path());
   Diagnosis result = best.search->finish();

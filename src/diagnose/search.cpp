@@ -116,8 +116,11 @@ Examination Search::examined(const std::function<bool(geo::GpsTime)>& counts, Ei
   std::vector<Examination::Started> started;
   for (const Taken& one : taken_)
     if (one.from) started.push_back({one.hypothesis, *one.from});
-  Examination examination = examine(run_->mission(), run_->layout(), run_->solution().knots, run_->hypotheses(),
-                                    {.draws = draws, .seed = options_.seed, .counts = counts, .started = std::move(started)});
+  Examination examination =
+      examine(run_->mission(), run_->layout(), run_->solution().knots, run_->hypotheses(),
+              {.draws = draws, .seed = options_.seed, .counts = counts, .started = std::move(started)}, [this](double done) {
+                if (progress_) progress_("examining effects", done);
+              });
   for (const TurnOn& bias : shared_) move_to_stated(bias, *run_, examination);
   return examination;
 }

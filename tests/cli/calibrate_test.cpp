@@ -81,6 +81,8 @@ const fs::path& simulated() {
                                 folder.path());
     EXPECT_EQ(outcome.status, 0) << outcome.error;
     EXPECT_NE(outcome.error.find("1 hole of 8 intervals"), std::string::npos) << outcome.error;
+    for (const char* stage : {" s: reading", " s: estimating", " s: writing"})
+      EXPECT_NE(outcome.error.find(stage), std::string::npos) << outcome.error;
     return folder.path();
   }();
   return made;

@@ -296,7 +296,7 @@ TEST(Load, SaysThatLeapSecondsHaveExpired) {
         folder.path() / "run.yaml",
         "imu: {file: imu.csv, gps_week: 6260, error_model: model.yaml, lever_arm_m: [0, 0, 0]}\n"
         "gnss: {file: gnss.csv, format: csv, columns: {time: 1, position: [2, 3, 4]}, sd_m: [1, 1, 1], time: {kind: unix}}\n");
-    return load(read_run_config(folder.path() / "run.yaml")).inspection_events;
+    return load(read_run_config(folder.path() / "run.yaml"), [](const char*, double) {}).inspection_events;
   };
   const auto expired = [](const record::Events& found) {
     return std::ranges::count_if(found, [](const record::Event& event) { return event.kind == "leap_seconds_expired"; });
@@ -310,7 +310,7 @@ TEST(Recordings, EveryShippedRunFileFitsItsRecording) {
   for (const fs::path& file : yaml_files("recordings")) {
     if (file.stem().string().ends_with("-imu")) continue;  // error models
     const RunConfig config = read_run_config(file);
-    const Recordings recordings = load(config);
+    const Recordings recordings = load(config, [](const char*, double) {});
     EXPECT_GT(recordings.imu.samples.size(), 10000U) << file;
     EXPECT_FALSE(recordings.inspection.empty()) << file;
   }
