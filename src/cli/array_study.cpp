@@ -9,6 +9,7 @@
 #include <numeric>
 
 #include "array_study_config.hpp"
+#include "coast/io/results_folder.hpp"
 #include "coast/io/writers.hpp"
 #include "coast/noise/arma_garch_study.hpp"
 #include "coast/report/panels.hpp"
@@ -282,9 +283,10 @@ void array_study(const std::filesystem::path& study_yaml, const CommonOptions& o
   page.subtitle = study_yaml.filename().string();
   page.sections.push_back(std::move(part.section));
   page.footer = fmt::format("coast {}, coast synth", COAST_VERSION);
-  io::write_text(out / "array_study.json", json.dump(2) + "\n");
+  io::begin_results(out / "array_study.json");
   io::write_text(out / "report.json", report::to_json(page));
   io::write_text(out / "report.html", report::render(page));
+  io::write_text(out / "array_study.json", json.dump(2) + "\n");
   line.clear();
   if (!options.quiet) fmt::print("study: {}\n", (out / "report.html").string());
 }

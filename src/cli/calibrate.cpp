@@ -129,10 +129,11 @@ void calibrate(const std::filesystem::path& input, const CommonOptions& options)
   estimate(config, records, result, line);
   line.show("writing", 0.0);
   const report::Page page = calibration_page(config, result);
+  io::begin_results(out / "calibration.json");
   io::write_text(out / "error_model.yaml", error_model_yaml(config, result));
-  io::write_text(out / "calibration.json", calibration_json(config, result));
   io::write_text(out / "report.json", report::to_json(page));
   io::write_text(out / "report.html", report::render(page));
+  io::write_text(out / "calibration.json", calibration_json(config, result));
   line.clear();
   if (!options.quiet) fmt::print("{}error model: {}\n", calibration_text(result), (out / "error_model.yaml").string());
 }

@@ -6,6 +6,7 @@
 
 #include "coast/geo/units.hpp"
 #include "coast/io/reference.hpp"
+#include "coast/io/results_folder.hpp"
 #include "coast/io/writers.hpp"
 #include "coast/record/error.hpp"
 #include "commands.hpp"
@@ -43,10 +44,19 @@ class DifferenceTable {
   std::string text_;
 };
 
+void warn_of_interrupted_run(const std::filesystem::path& file) {
+  if (const auto awaited = io::awaited_result(file.parent_path()))
+    fmt::print(stderr,
+               "warning: {}: the run was interrupted before it wrote {}; other files of its folder may be of another run\n",
+               file.string(), *awaited);
+}
+
 }  // namespace
 
 void compare(const std::filesystem::path& a, const std::filesystem::path& b, const Eigen::Vector3d& lever_arm_b,
              const CommonOptions& options) {
+  warn_of_interrupted_run(a);
+  warn_of_interrupted_run(b);
   const record::Trajectory first = io::read_reference(io::ReferenceFileOptions::of_file(a));
   const record::Trajectory second = io::read_reference(io::ReferenceFileOptions::of_file(b), first.states.front().t);
   record::Trajectory reference = second;
@@ -61,6 +71,7 @@ void compare(const std::filesystem::path& a, const std::filesystem::path& b, con
                       "Check the GPS weeks of both files."});
   if (!options.out.empty()) {
     const std::filesystem::path out = output_folder(a, options.out, {"differences.csv", "comparison.json"});
+    io::begin_results(out / "comparison.json");
     io::write_text(out / "differences.csv", table.text());
     io::write_text(out / "comparison.json", error_json(s).dump(1) + "\n");
   }

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "coast/diagnose/diagnosis.hpp"
+#include "coast/io/results_folder.hpp"
 #include "coast/io/writers.hpp"
 #include "coast/io/yaml.hpp"
 #include "coast/report/render.hpp"
@@ -111,15 +112,16 @@ void diagnose(const std::filesystem::path& run_yaml, const DiagnoseOptions& choi
   line.show("writing", 0.0);
   const std::string error_model = "error_model.diagnosed.yaml";  // beside the run, so that both can be moved
   const std::string diagnosed = diagnosed_yaml(config.root.resolved_yaml(), diagnosis, error_model);
+  io::begin_results(out / "diagnosis.json");
   if (changes_error_model(diagnosis))
     io::write_text(out / error_model, diagnosis.modelled.setup.model.yaml());
   else
     std::filesystem::remove(out / error_model);  // of a former diagnosis
-  io::write_text(out / "diagnosis.json", diagnosis_json(diagnosis, input, simulation));
   io::write_text(out / "run.diagnosed.yaml", diagnosed);
   const report::Page page = diagnosis_page(run_yaml.filename().string(), diagnosis, diagnosed, simulation);
   io::write_text(out / "report.json", report::to_json(page));
   io::write_text(out / "report.html", report::render(page));
+  io::write_text(out / "diagnosis.json", diagnosis_json(diagnosis, input, simulation));
   line.clear();
   if (!options.quiet)
     fmt::print("{}the run with it: {}\nreport: {}\n", diagnosis_text(diagnosis, simulation),

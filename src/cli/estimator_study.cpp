@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include "coast/io/results_folder.hpp"
 #include "coast/io/writers.hpp"
 #include "coast/report/render.hpp"
 #include "commands.hpp"
@@ -21,9 +22,10 @@ void estimator_study(const std::filesystem::path& study_yaml, const CommonOption
   outcome.summaries = noise::summarise(config.study, outcome.result);
   line.show("writing", 0.0);
   const report::Page page = estimator_study_page(config, outcome);
-  io::write_text(out / "estimator_study.json", estimator_study_json(config, outcome));
+  io::begin_results(out / "estimator_study.json");
   io::write_text(out / "report.json", report::to_json(page));
   io::write_text(out / "report.html", report::render(page));
+  io::write_text(out / "estimator_study.json", estimator_study_json(config, outcome));
   line.clear();
   if (!options.quiet) fmt::print("{}report: {}\n", estimator_study_text(config, outcome), (out / "report.html").string());
 }

@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include "coast/io/results_folder.hpp"
 #include "coast/io/writers.hpp"
 #include "coast/report/render.hpp"
 #include "commands.hpp"
@@ -36,10 +37,11 @@ void outage(const std::filesystem::path& study_yaml, const CommonOptions& option
   page.footer = fmt::format("coast {}, coast outage", COAST_VERSION);
   add_durations(study, page);
   add_groups(study, page);
-  io::write_text(out / "outage.json", outage_json(study).dump(1) + "\n");
+  io::begin_results(out / "outage.json");
   io::write_text(out / "outages.csv", outages_csv(study));
   io::write_text(out / "report.json", report::to_json(page));
   io::write_text(out / "report.html", report::render(page));
+  io::write_text(out / "outage.json", outage_json(study).dump(1) + "\n");
   file->remove();
   line.clear();
   if (!options.quiet) fmt::print("report: {}\n", (out / "report.html").string());

@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include "coast/geo/units.hpp"
+#include "coast/io/results_folder.hpp"
 #include "coast/io/writers.hpp"
 #include "coast/record/error.hpp"
 #include "coast/report/render.hpp"
@@ -19,12 +20,13 @@ void ppk(const std::filesystem::path& input, const CommonOptions& options) {
   const PpkResult result = run_ppk(config, [&](double share) { line.show("solving", share); });
   line.show("writing", 0.0);
   const report::Page page = ppk_page(config, result);
+  io::begin_results(out / "ppk.json");
   io::write_gnss_pos(out / "ppk.pos", result.fixes);
   io::write_text(out / "residuals.csv", residuals_csv(result));
-  io::write_text(out / "ppk.json", ppk_json(config, result));
   io::write_text(out / "ppk.resolved.yaml", config.map.resolved_yaml());
   io::write_text(out / "report.json", report::to_json(page));
   io::write_text(out / "report.html", report::render(page));
+  io::write_text(out / "ppk.json", ppk_json(config, result));
   line.clear();
   for (const record::Event& event : result.events)
     if (event.severity == record::Event::Severity::kWarning) fmt::print(stderr, "warning: {}\n", event.text);

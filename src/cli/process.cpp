@@ -9,6 +9,7 @@
 #include <memory>
 
 #include "background_sink.hpp"
+#include "coast/io/results_folder.hpp"
 #include "coast/io/writers.hpp"
 #include "coast/noise/chi_square.hpp"
 #include "coast/report/render.hpp"
@@ -196,7 +197,6 @@ void ProcessRun::run_earlier_passes() {
 void ProcessRun::solve_and_write() {
   const std::vector<study::Outage> gaps = outages();
   const bool keep_gap_free = gaps.empty() && config_.sweep && !reference_;
-
   TrajectoryOutput forward_output(config_.output);
   TrajectoryOutput output(config_.output);
   forward_output.add_writer(io::make_nav_writer(out_ / "forward.nav"));
@@ -239,9 +239,9 @@ void ProcessRun::solve_and_write() {
                            backward_ ? &*backward_ : nullptr);
   backward_.reset();
   for (BackgroundSink* sink : {&write_forward, &draw_forward, &write, &draw}) sink->finish();
+  io::begin_results(out_ / "summary.json");
   forward_output.close();
   output.close();
-
   result_.innovations = std::move(solution_.forward.innovations);
   result_.events.insert(result_.events.end(), solution_.forward.events.begin(), solution_.forward.events.end());
   result_.batch = std::move(solution_.batch);
@@ -415,11 +415,11 @@ std::string ProcessRun::write_results() {
   note_estimates();
   const std::string resolved = config_.root.resolved_yaml();
   io::write_text(out_ / "run.resolved.yaml", resolved);
-  io::write_text(out_ / "summary.json", summary_json(result_));
   io::write_text(out_ / "innovations.csv", innovations_csv(result_.innovations));
   const report::Page page = make_page({config_, result_, mission_, curves_, resolved});
   io::write_text(out_ / "report.json", report::to_json(page));
   io::write_text(out_ / "report.html", report::render(page));
+  io::write_text(out_ / "summary.json", summary_json(result_));
   return summary_text(result_);
 }
 

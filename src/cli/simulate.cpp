@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 #include <tbb/global_control.h>
 
+#include "coast/io/results_folder.hpp"
 #include "coast/io/rinex.hpp"
 #include "coast/io/writers.hpp"
 #include "coast/io/yaml.hpp"
@@ -111,18 +112,19 @@ void simulate(const std::filesystem::path& scenario_yaml, std::optional<std::uin
   line.show("simulating", 0.0);
   const coast::simulate::SimulatedMission mission = coast::simulate::simulate(scenario, static_cast<int>(threads));
   line.show("writing", 0.0);
+  io::begin_results(out / "run.yaml");
   io::write_imu_csv(out / "imu.csv", mission.imu);
   io::write_gnss_pos(out / "gnss.pos", mission.gnss);
   const auto truth = io::make_nav_writer(out / "truth.nav");
   for (const record::NavState& nav : mission.truth.states) truth->write({nav, {}});
   truth->close();
   io::write_text(out / "error_model.yaml", scenario.error_model->yaml());
-  io::write_text(out / "run.yaml", run_yaml(scenario, mission, positions_yaml(scenario)));
   if (scenario.observations) {
     line.show("simulating observations", 0.0);
     write_observations(scenario, mission, out);
   }
   write_array(scenario, out, static_cast<int>(threads));
+  io::write_text(out / "run.yaml", run_yaml(scenario, mission, positions_yaml(scenario)));
   line.clear();
   if (!options.quiet)
     fmt::print("{} IMU samples, {} fixes; process them with\n  coast process {}\n", mission.imu.samples.size(),

@@ -132,6 +132,7 @@ void merge_all(const ArrayConfig& config, SynthResult& result, ProgressLine& lin
 
 void write_results(const ArrayConfig& config, const SynthResult& result, const std::filesystem::path& out) {
   const report::Page page = synth_page(config, result);
+  io::begin_results(out / "synth.json");
   io::write_imu_csv(out / "imu.csv", synthetic_imu(result));
   io::write_text(out / "noise.csv", noise_csv(result));
   io::write_text(out / "error_model.yaml",
@@ -139,10 +140,10 @@ void write_results(const ArrayConfig& config, const SynthResult& result, const s
                      ? result.extended->yaml()
                      : array::error_model_yaml(synthetic_name(config), 1.0 / result.assembly.signals.dt, result.remaining));
   if (result.extended) io::write_member_blocks(out / "members.csv", array::member_blocks(result.assembly.signals));
-  io::write_text(out / "synth.json", synth_json(config, result));
   io::write_text(out / "array.resolved.yaml", config.root.resolved_yaml());
   io::write_text(out / "report.json", report::to_json(page));
   io::write_text(out / "report.html", report::render(page));
+  io::write_text(out / "synth.json", synth_json(config, result));
 }
 
 std::vector<std::string> files_of(const ArrayConfig& config) {

@@ -26,9 +26,11 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr std::string_view kMark = ".coast-results";
+constexpr std::string_view kBegun = "begun ";  // and the name of the file that closes a set of results
 constexpr std::string_view kTitle = "# bytes and names of what coast wrote here; it replaces no other file of this folder\n";
 
-// Lines of the mark: "bytes name". Several lengths of one file stand side by side, so that lines are only ever appended.
+// Lines of the mark: "bytes name", and "begun name". Several lengths of one file stand side by side, so that lines are only
+// ever appended.
 using Lines = std::set<std::string>;
 
 std::string line_of(const std::string& name, std::uintmax_t bytes) {
@@ -176,6 +178,25 @@ void open_results_folder(const fs::path& folder, const std::vector<std::string>&
   for (const std::string& name : files) require_replaceable(folder / name, lines);
   remove_parts_of_dead_processes(folder, lines);
   if (!mark) append(folder / kMark, fmt::format("{}{}{}", kTitle, fmt::join(lines, "\n"), lines.empty() ? "" : "\n"), O_CREAT);
+}
+
+void begin_results(const fs::path& closing) {
+  require_replaceable(closing);
+  const std::string line = fmt::format("{}{}", kBegun, closing.filename().string());
+  const auto lines = mark_of(closing.parent_path());
+  if (lines && !lines->contains(line)) append(closing.parent_path() / kMark, line + '\n', 0);
+  std::error_code failed;
+  fs::remove(closing, failed);
+  if (failed) throw OutputError(closing.string(), failed.message());
+}
+
+std::optional<std::string> awaited_result(const fs::path& folder) {
+  for (const std::string& line : mark_of(folder).value_or(Lines{})) {
+    if (!line.starts_with(kBegun)) continue;
+    const std::string name = line.substr(kBegun.size());
+    if (!fs::exists(folder / name)) return name;
+  }
+  return std::nullopt;
 }
 
 void require_replaceable(const fs::path& file) {

@@ -139,6 +139,69 @@ TEST(OutputSafety, AnInterruptedRunLeavesNoParts) {
   EXPECT_FALSE(fs::exists(fs::path(out) / "run.yaml"));
 }
 
+/// Runs a job again over its results and ends it, as `kill -9` does, when its trajectory is new and its summary is not written.
+int killed_between_results(const std::string& job, const fs::path& out, const fs::path& log) {
+  const std::string script = fmt::format(
+      "'{0}' {1} >'{3}' 2>&1 & p=$!; while kill -0 $p 2>/dev/null && [ -e '{2}/summary.json' ]; do :; done; "
+      "while kill -0 $p 2>/dev/null && ls '{2}'/trajectory.nav.part-* >/dev/null 2>&1; do :; done; kill -KILL $p; wait $p",
+      COAST_PROGRAM, job, out.string(), log.string());
+  return WEXITSTATUS(std::system(script.c_str()));
+}
+
+TEST(OutputSafety, ResultsOfTwoRunsAreKnown) {
+  const test::TemporaryDirectory folder;
+  const fs::path made = simulated_recording(kShortDrive, folder.path());
+  const fs::path out = folder.path() / "out";
+  write(made / "sweep.yaml", text_of(made / "run.yaml") + "outages: {every_s: 2, first_s: 60, durations_s: [10, 20, 30]}\n");
+  const std::string job = fmt::format("process '{}' --out '{}'", (made / "sweep.yaml").string(), out.string());
+  const std::string report = fmt::format("report '{}'", out.string());
+  const std::string compare =
+      fmt::format("compare '{}' '{}'", (out / "trajectory.nav").string(), (made / "truth.nav").string());
+  ASSERT_EQ(run(job, folder.path()).status, 0);
+  EXPECT_EQ(run(report, folder.path()).status, 0);
+  EXPECT_FALSE(says(run(compare, folder.path()), "interrupted"));
+
+  const fs::path log = folder.path() / "log.txt";
+  ASSERT_EQ(killed_between_results(job, out, log), 128 + SIGKILL) << text_of(log);
+  ASSERT_TRUE(fs::exists(out / "trajectory.nav"));
+  EXPECT_FALSE(fs::exists(out / "summary.json"));
+  const Outcome refused = run(report, folder.path());
+  EXPECT_EQ(refused.status, 2);
+  EXPECT_TRUE(says(refused, "interrupted before it wrote summary.json")) << refused.error;
+  const Outcome warned = run(compare, folder.path());
+  EXPECT_EQ(warned.status, 0);
+  EXPECT_TRUE(says(warned, "trajectory.nav: the run was interrupted before it wrote summary.json")) << warned.error;
+
+  ASSERT_EQ(run(job, folder.path()).status, 0);
+  EXPECT_TRUE(parts_in(out).empty());
+  EXPECT_EQ(run(report, folder.path()).status, 0);
+  EXPECT_FALSE(says(run(compare, folder.path()), "interrupted"));
+}
+
+/// A job that ends with an error between two of its files leaves its set open, like one that was killed.
+TEST(OutputSafety, EveryJobWritesTheFileThatClosesItsResultsLast) {
+  const test::TemporaryDirectory folder;
+  const std::string here = folder.path().string();
+  const fs::path made = simulated_recording(kShortDrive, folder.path());
+  write(folder.path() / "study.yaml",
+        "schema: coast.study/1\nrun: rec/run.yaml\nsweep: {every_s: 60, first_s: 100, durations_s: [10]}\n"
+        "error_models:\n  - {name: test, file: model.yaml}\n");
+  for (const auto& [job, closing] : std::vector<std::pair<std::string, std::string>>{
+           {fmt::format("process '{}/rec/run.yaml'", here), "summary.json"},
+           {fmt::format("outage '{}/study.yaml'", here), "outage.json"},
+           {fmt::format("diagnose '{}/rec/run.yaml' --twins 0", here), "diagnosis.json"}}) {
+    const fs::path out = folder.path() / closing;
+    const std::string to_out = fmt::format("{} --out '{}'", job, out.string());
+    fs::create_directories(out / "report.html");  // no file can take its place
+    EXPECT_EQ(run(to_out, folder.path()).status, 1) << job;
+    EXPECT_FALSE(fs::exists(out / closing)) << job;
+    EXPECT_TRUE(says(run(fmt::format("report '{}'", out.string()), folder.path()), "before it wrote " + closing)) << job;
+    fs::remove(out / "report.html");
+    EXPECT_EQ(run(to_out, folder.path()).status, 0) << job;
+    EXPECT_EQ(run(fmt::format("report '{}'", out.string()), folder.path()).status, 0) << job;
+  }
+}
+
 TEST(OutputSafety, NamesTheNearestSubcommand) {
   const test::TemporaryDirectory folder;
   const Outcome outcome = run("proces run.yaml", folder.path());

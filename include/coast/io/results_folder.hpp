@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -17,6 +18,14 @@ namespace coast::io {
 /// @throws InputError   one of `files` is there and is not coast's, or was read by this job
 /// @throws OutputError  the mark cannot be written
 void open_results_folder(const std::filesystem::path& folder, const std::vector<std::string>& files);
+
+/// Begins to replace a set of results. The file that closes the set (summary.json of `coast process`) is removed and awaited by
+/// the mark, and the job writes it last: where it is missing the folder holds part of a set, or files of two runs.
+/// @throws InputError   the file is there and is not coast's
+/// @throws OutputError  it cannot be removed, or the mark cannot be written
+void begin_results(const std::filesystem::path& closing);
+/// Name of the closing file that a run which was interrupted did not write; nothing in a folder without a mark.
+[[nodiscard]] std::optional<std::string> awaited_result(const std::filesystem::path& folder);
 
 /// Whether a file can be written without the loss of one that is not coast's. In a folder without a mark every file can.
 /// @throws InputError  the file is there, in a folder with a mark, and coast did not write it or this job has read it
