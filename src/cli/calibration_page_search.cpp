@@ -38,7 +38,7 @@ std::optional<report::Panel> search_panel(const CalibratedAxis& axis) {
   report::Series of_direct = below(direct.trace, optimum);
   if (of_em.x.empty() && of_direct.x.empty()) return {};
   report::Panel panel =
-      report::xy_panel(id_of(axis) + "-search", "Way to the optimum", {"iteration", "", report::Axis::Scale::kLinear, {}, {}},
+      report::xy_panel(id_of(axis) + "-search", "Convergence", {"iteration", "", report::Axis::Scale::kLinear, {}, {}},
                        {"below the optimum", "", report::Axis::Scale::kLog, {}, {}},
                        fmt::format("Log-likelihood under the largest that either found. The direct search: {} passes over the "
                                    "record at full rate; EM: {}, "

@@ -232,7 +232,7 @@ std::optional<report::Panel> coverage_panel(const EstimatorStudyConfig& config, 
 std::optional<report::Panel> way_panel(const EstimatorStudyConfig& config, const EstimatorStudyOutcome& outcome) {
   constexpr double kLeast = 1e-7;  // of what the search promises; less cannot be told from rounding
   report::Panel panel = report::xy_panel(
-      "way", "Way to the optimum, first run", axis_of("iteration", "", report::Axis::Scale::kLog),
+      "way", "Convergence of the first run", axis_of("iteration", "", report::Axis::Scale::kLog),
       axis_of("log-likelihood below the best", "", report::Axis::Scale::kLog),
       "Below 0.1 the estimate would not change in any digit that matters. EM comes near in some dozens of passes and then "
       "crawls; "

@@ -61,7 +61,7 @@ std::vector<Listed> shown(const ProcessPage& page, std::vector<Listed> all) {
   return all;
 }
 
-/// Way travelled between two times by the delivered trajectory, m.
+/// Distance travelled between two times by the delivered trajectory, m.
 double travelled(const report::Series& distance, double from, double to) {
   const auto at = [&](double t) {
     const auto after = std::ranges::lower_bound(distance.x, t);
@@ -85,7 +85,7 @@ report::Verdict verdict_of(const OutageErrors& e) {
 }
 
 report::Table overview(const ProcessPage& page, const std::vector<Listed>& all) {
-  constexpr double kLeastWay = 5.0;  // m: a share of less says nothing
+  constexpr double kLeastDistance = 5.0;  // m: a share of less says nothing
   const report::Series distance = page.curves.curves().distance.finish();
   const bool gnss =
       std::ranges::any_of(all, [](const Listed& l) { return l.outage->forward.gnss_horizontal_max_m.has_value(); });
@@ -93,25 +93,33 @@ report::Table overview(const ProcessPage& page, const std::vector<Listed>& all) 
   table.id = "outage-table";
   table.title = "Outages";
   table.caption = fmt::format(
-      "Largest horizontal error against {}{}, and as a share of the way travelled. Inside: share of the errors, axis by axis, "
+      "Largest horizontal error against {}{}, and as a share of the distance travelled. Inside: share of the errors, axis by "
+      "axis, "
       "within their predicted 95 %; one outage has few independent errors, so only a gross miss is marked.",
       page.result.compared_with == "reference" ? "the reference" : "the run without gaps",
       gnss ? ", against the withheld fixes (GNSS)" : "");
-  table.columns = {{"outage", ""},          {"start", "s of week"},  {"duration", "s"},       {"way", "m"},
-                   {"forward", "m"},        {"smoothed", "m"},       {"forward", "% of way"}, {"smoothed", "% of way"},
-                   {"forward inside", "%"}, {"smoothed inside", "%"}};
+  table.columns = {{"outage", ""},
+                   {"start", "s of week"},
+                   {"duration", "s"},
+                   {"distance", "m"},
+                   {"forward", "m"},
+                   {"smoothed", "m"},
+                   {"forward", "% of distance"},
+                   {"smoothed", "% of distance"},
+                   {"forward inside", "%"},
+                   {"smoothed inside", "%"}};
   if (gnss) table.columns.insert(table.columns.end(), {{"forward, GNSS", "m"}, {"smoothed, GNSS", "m"}});
   for (const auto& [index, o] : all) {
     const double from = seconds_since_start(page, o->outage.start);
-    const double way = travelled(distance, from, from + o->outage.duration_s);
+    const double distance_m = travelled(distance, from, from + o->outage.duration_s);
     const OutageErrors* s = o->smoothed ? &*o->smoothed : nullptr;
-    const auto of_way = [&](const OutageErrors* e) {
-      return e != nullptr && way >= kLeastWay ? number(100.0 * e->horizontal_max_m / way, 2) : "";
+    const auto of_distance = [&](const OutageErrors* e) {
+      return e != nullptr && distance_m >= kLeastDistance ? number(100.0 * e->horizontal_max_m / distance_m, 2) : "";
     };
     auto row = cells({fmt::format("{}", index), fmt::format("{:.1f}", o->outage.start.sow()),
-                      fmt::format("{:g}", o->outage.duration_s), fmt::format("{:.0f}", way),
-                      number(o->forward.horizontal_max_m), s ? number(s->horizontal_max_m) : "", of_way(&o->forward), of_way(s),
-                      share_inside(o->forward), s ? share_inside(*s) : ""});
+                      fmt::format("{:g}", o->outage.duration_s), fmt::format("{:.0f}", distance_m),
+                      number(o->forward.horizontal_max_m), s ? number(s->horizontal_max_m) : "", of_distance(&o->forward),
+                      of_distance(s), share_inside(o->forward), s ? share_inside(*s) : ""});
     row[8].verdict = verdict_of(o->forward);
     if (s) row[9].verdict = verdict_of(*s);
     if (gnss) {

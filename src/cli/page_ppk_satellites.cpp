@@ -2,7 +2,6 @@
 
 #include <cmath>
 #include <map>
-#include <numbers>
 
 #include "coast/geo/units.hpp"
 #include "coast/report/panels.hpp"
@@ -17,26 +16,14 @@ using carrier::PpkEpoch;
 using carrier::SignalResidual;
 using Use = SignalResidual::Use;
 
-report::Series circle(double radius) {
-  report::Series series;
-  for (int i = 0; i <= 120; ++i) {
-    const double angle = 2.0 * std::numbers::pi * i / 120.0;
-    series.x.push_back(radius * std::sin(angle));
-    series.y.push_back(radius * std::cos(angle));
-  }
-  return series;
-}
-
 report::Panel sky(const PpkResult& result) {
-  const report::Axis across{"west to east, zenith distance", "deg", report::Axis::Scale::kLinear, {}, std::pair(-92.0, 92.0)};
-  const report::Axis up{"south to north, zenith distance", "deg", report::Axis::Scale::kLinear, {}, std::pair(-92.0, 92.0)};
-  report::Panel panel =
-      report::xy_panel("sky", "Sky", across, up, "North is up; circles at 0, 30 and 60 degrees of elevation.");
+  report::Panel panel = report::xy_panel("sky", "Sky", {"east", "deg", report::Axis::Scale::kLinear, {}, {}},
+                                         {"north", "deg", report::Axis::Scale::kLinear, {}, {}},
+                                         "Where the satellites were, seen from the antenna: the zenith in the middle, the "
+                                         "horizon outside. A side without satellites costs accuracy in that direction.");
   report::Plot& plot = panel.plot();
-  plot.equal_aspect = true;
+  plot.sky = true;
   plot.height_px = 520;
-  for (const double zenith : {90.0, 60.0, 30.0})
-    report::add_line(plot, "0, 30, 60 deg of elevation", circle(zenith), report::Tone::kMuted).width_px = 0.8;
   std::map<record::SatelliteSystem, report::Series> tracks;
   std::map<record::Satellite, Eigen::Vector2d> last;
   const std::size_t step = 1 + result.solution.epochs.size() / 200;

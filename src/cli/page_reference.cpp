@@ -60,13 +60,29 @@ report::Panel error_panel(const ProcessPage& page, const Quantity& q) {
   return panel;
 }
 
+/// Errors of neighbouring epochs are correlated: only their share over a whole mission is judged, and with room.
+report::Cell share_inside_cell(const study::AxisErrors& errors, Eigen::Index axis) {
+  constexpr double kGood = 0.90;
+  constexpr double kTooSmall = 0.75;  // sigmas that are 1.7 times too small
+  constexpr double kCautious = 0.98;
+  if (!errors.inside_95) return {};
+  const double inside = (*errors.inside_95)(axis);
+  const report::Verdict verdict = inside < kTooSmall   ? report::Verdict::kBad
+                                  : inside < kGood     ? report::Verdict::kWarn
+                                  : inside > kCautious ? report::Verdict::kNone
+                                                       : report::Verdict::kGood;
+  return {percent(inside), verdict};
+}
+
 report::Table error_table(const AgainstReference& r, const std::vector<Quantity>& quantities) {
   const study::ErrorSummary forward_summary = r.summary(r.forward);
   report::Table table;
   table.id = "reference-table";
   table.title = "Errors against the reference";
-  table.caption = fmt::format("Over {} epochs of the reference. Inside 95 %: within 1.96 predicted sigma; 90 to 98 % is good.",
-                              forward_summary.epochs);
+  table.caption = fmt::format(
+      "Over {} epochs of the reference. Inside 95 %: within 1.96 predicted sigma; 90 to 98 % is good, more "
+      "is cautious, below 75 % the sigmas are too small.",
+      forward_summary.epochs);
   table.columns = {{"error", "", false}, {"unit", "", false},  {"forward rms", ""},          {"forward max", ""},
                    {"smoothed rms", ""}, {"smoothed max", ""}, {"forward inside 95 %", "%"}, {"smoothed inside 95 %", "%"}};
   for (const Quantity& q : quantities) {
@@ -76,10 +92,11 @@ report::Table error_table(const AgainstReference& r, const std::vector<Quantity>
     const auto value = [&q](double si) { return number(si / q.to_si); };
     for (std::size_t i = 0; i < 3; ++i) {
       const auto axis = static_cast<Eigen::Index>(i);
-      const auto inside = [axis](const study::AxisErrors& e) { return e.inside_95 ? percent((*e.inside_95)(axis)) : ""; };
-      table.rows.push_back(cells({q.components[i], q.unit, value(forward.rms(axis)), value(forward.max(axis)),
-                                  smoothed ? value(smoothed->rms(axis)) : "", smoothed ? value(smoothed->max(axis)) : "",
-                                  inside(forward), smoothed ? inside(*smoothed) : ""}));
+      auto row = cells({q.components[i], q.unit, value(forward.rms(axis)), value(forward.max(axis)),
+                        smoothed ? value(smoothed->rms(axis)) : "", smoothed ? value(smoothed->max(axis)) : ""});
+      row.push_back(share_inside_cell(forward, axis));
+      row.push_back(smoothed ? share_inside_cell(*smoothed, axis) : report::Cell{});
+      table.rows.push_back(std::move(row));
     }
   }
   return table;

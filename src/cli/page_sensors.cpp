@@ -132,7 +132,7 @@ report::Panel state_panel(const ProcessPage& page, const Group& group, std::size
   for (std::size_t i = 0; i < group.tracks.size(); ++i) {
     const StateTrack& t = *group.tracks[i];
     report::Plot& plot = panel.plots[i];
-    plot.height_px = 110;
+    plot.height_px = group.tracks.size() > 1 ? 110 : 160;  // of a stack the last one gets room for the axis of time by itself
     const bool smoothed = !t.smoothed.empty();
     report::Line& forward =
         report::add_line(plot, "forward", curve(t.seconds, scaled(t.forward, to_si), scaled(t.forward_sd, to_si), 1.0, 4000),

@@ -82,8 +82,10 @@ report::Panel prediction_panel(const OutageStudy& study) {
                          "Left: root mean square of the forward error at the end of an outage over that of the sigma stated "
                          "there, horizontal; 1 is a "
                          "filter that knows its sensors. Right: share of all errors, axis by axis, inside their stated 95 %.");
-  report::Plot& ratio = report::add_cell(panel, "error over stated sigma", "", "", "");
-  report::Plot& inside = report::add_cell(panel, "inside 95 %", "", "", "%");
+  report::add_cell(panel, "error over stated sigma", "", "", "");
+  report::add_cell(panel, "inside 95 %", "", "", "%");
+  report::Plot& ratio = panel.plots[0];  // behind the last add_cell, which moves the cells
+  report::Plot& inside = panel.plots[1];
   ratio.y.label = "rms : sigma";
   inside.y.label = "inside";
   ratio.bounds.push_back({1.0, "as stated", report::Tone::kMuted});
@@ -142,18 +144,9 @@ report::Table duration_table(const OutageStudy& study) {
   table.caption =
       "Largest horizontal error over the outages of a duration, forward and smoothed; gain: rms of forward over that of "
       "smoothed; inside: share of all errors within their stated 95 %, forward and smoothed.";
-  table.columns = {{"error model", "", false},
-                   {"duration", "s"},
-                   {"outages", ""},
-                   {"forward median", "m"},
-                   {"rms", "m"},
-                   {"95 %", "m"},
-                   {"smoothed median", "m"},
-                   {"rms", "m"},
-                   {"95 %", "m"},
-                   {"gain", ""},
-                   {"inside", "%"},
-                   {"smoothed", "%"}};
+  table.columns = {{"error model", "", false}, {"duration", "s"},     {"outages", ""},          {"forward median", "m"},
+                   {"forward rms", "m"},       {"forward 95 %", "m"}, {"smoothed median", "m"}, {"smoothed rms", "m"},
+                   {"smoothed 95 %", "m"},     {"gain", ""},          {"forward inside", "%"},  {"smoothed inside", "%"}};
   for (const ModelRun& run : study.result.runs)
     for (std::size_t g = 0; g < study.result.groups.size(); ++g) {
       const Drift forward = study::drift_of(run.outages[g], false);
@@ -180,16 +173,19 @@ report::Table manoeuvre_table(const OutageStudy& study) {
       "deg/s). "
       "Medians of the largest horizontal error.";
   table.columns = {{"error model", "", false}, {"duration", "s"}, {"manoeuvre", "", false}, {"outages", ""},
-                   {"forward", "m"},           {"smoothed", "m"}, {"inside", "%"},          {"smoothed", "%"}};
+                   {"forward", "m"},           {"smoothed", "m"}, {"forward inside", "%"},  {"smoothed inside", "%"}};
   for (const ModelRun& run : study.result.runs)
     for (std::size_t g = 0; g < study.result.groups.size(); ++g)
       for (const ManoeuvreDrift& part : by_manoeuvre(run.outages[g])) {
         const Drift forward = study::drift_of(part.outages, false);
         const Drift smoothed = study::drift_of(part.outages, true);
-        table.rows.push_back(cells({name_of(study, run), fmt::format("{:g}", study.result.groups[g].duration_s),
-                                    std::string(study::name(part.manoeuvre)), fmt::format("{}", part.outages.size()),
-                                    number(forward.horizontal.median), number(smoothed.horizontal.median),
-                                    percent(forward.inside_95), percent(smoothed.inside_95)}));
+        auto row = cells({name_of(study, run), fmt::format("{:g}", study.result.groups[g].duration_s),
+                          std::string(study::name(part.manoeuvre)), fmt::format("{}", part.outages.size()),
+                          number(forward.horizontal.median), number(smoothed.horizontal.median), percent(forward.inside_95),
+                          percent(smoothed.inside_95)});
+        row[row.size() - 2].verdict = verdict_of_share(forward.inside_95, part.outages.size());
+        row.back().verdict = verdict_of_share(smoothed.inside_95, part.outages.size());
+        table.rows.push_back(std::move(row));
       }
   return table;
 }

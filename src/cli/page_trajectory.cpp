@@ -54,7 +54,7 @@ void add_outages(const ProcessPage& page, const report::Series& track, report::P
   }
 }
 
-/// Start and end, in one word where the way closes.
+/// Start and end, in one word where the track closes.
 void add_ends(const report::Series& track, report::Plot& plot) {
   if (track.x.empty()) return;
   const auto [west, east] = std::ranges::minmax(track.x);
@@ -74,7 +74,7 @@ report::Panel plan(const ProcessPage& page) {
   add_outages(page, track, plot);
   add_fixes(page, plot);
   add_ends(track, plot);
-  report::add_line(plot, delivered(page), track, delivered_tone(page));
+  report::add_line(plot, delivered(page), track, delivered_tone(page)).width_px = 1.6;
   return panel;
 }
 

@@ -253,6 +253,7 @@ json write_plot(const Plot& plot) {
   put_list(node, "bounds", plot.bounds, write_bound);
   put_list(node, "marks", plot.marks, write_mark);
   put(node, "equal_aspect", plot.equal_aspect);
+  put(node, "sky", plot.sky);
   put(node, "link", plot.link);
   put(node, "height_px", plot.height_px);
   return node;
@@ -270,6 +271,7 @@ Plot read_plot(const json& node) {
           read_list<Bound>(node, "bounds", read_bound),
           read_list<Mark>(node, "marks", read_mark),
           node.value("equal_aspect", false),
+          node.value("sky", false),
           text(node, "link"),
           node.value("height_px", 0)};
 }

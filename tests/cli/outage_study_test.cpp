@@ -81,7 +81,12 @@ nlohmann::json studied(const fs::path& study, const fs::path& out, const fs::pat
   EXPECT_EQ(outcome.status, 0) << outcome.error;
   EXPECT_FALSE(fs::exists(out / "outages.partial"));
   test::expect_valid("study", test::load_yaml_as_json(study));
-  test::expect_valid("page", nlohmann::json::parse(text_of(out / "report.json")));
+  const nlohmann::json page = nlohmann::json::parse(text_of(out / "report.json"));
+  test::expect_valid("page", page);
+  for (const nlohmann::json& section : page["sections"])
+    for (const nlohmann::json& panel : section.value("panels", nlohmann::json::array()))
+      for (const nlohmann::json& plot : panel["plots"])
+        EXPECT_TRUE(plot.contains("lines") || plot.contains("points") || plot.contains("bars")) << panel["id"] << plot["title"];
   auto result = nlohmann::json::parse(text_of(out / "outage.json"));
   test::expect_valid("outage", result);
   return result;

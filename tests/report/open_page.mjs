@@ -2,7 +2,7 @@
 //
 //     node tests/report/open_page.mjs <report.html> [screenshot_dir]
 //
-// Every plot has drawn its data, the console is free of errors, nothing is fetched, zoom, pan and reset work and are quick.
+// Every plot has drawn its data, no text is cut on narrow and wide screens, the console is free of errors, nothing is fetched, zoom, pan and reset work and are quick.
 // Exit status 0 passed, 1 failed (each failure on a line), 2 wrong call, 77 no browser here.
 // playwright-core is taken from $COAST_NODE_MODULES, else from a build tree of this project.
 import { execFileSync } from "node:child_process";
@@ -10,10 +10,12 @@ import { existsSync, mkdirSync, readdirSync, statSync } from "node:fs";
 import { createRequire } from "node:module";
 import { dirname, join, resolve } from "node:path";
 import { fileURLToPath, pathToFileURL } from "node:url";
+import { cutAt, noteCutText } from "./cut_text.mjs";
 
 const LEAST_INK = 30; // canvas pixels that differ between a plot with and without its curves
 const SLOWEST_ZOOM_MS = 400; // median of a wheel step, event to frame; an idle machine needs about 30, a loaded one must not fail
 const MOST_BYTES = 15e6;
+const WIDTHS = [390, 1024, 1440]; // a phone, a tablet, a desk; the last stays
 
 const root = resolve(dirname(fileURLToPath(import.meta.url)), "../..");
 const failures = [];
@@ -213,10 +215,12 @@ async function run(file, dir) {
       failures.push(`network: ${route.request().url().slice(0, 200)}`);
       return route.abort();
     });
+    await page.addInitScript(noteCutText);
     const began = performance.now();
     await page.goto(pathToFileURL(resolve(file)).href);
     await page.locator("html[data-ready=true]").waitFor({ timeout: 30000, state: "attached" });
     const loaded = performance.now() - began;
+    for (const width of WIDTHS) failures.push(...(await cutAt(page, width, frames)));
     await checkInk(page);
 
     const timed = await page.locator("[data-plot]:not(:has(.place))").all();

@@ -41,6 +41,7 @@ Page full_page() {
   plot.bounds = {{3.3, "gate", Tone::kWarn}};
   plot.marks = {{1.0, 2.0, "1"}};
   plot.equal_aspect = true;
+  plot.sky = true;
   plot.link = "row";
   plot.height_px = 123;
   Section section{"section", "Section", "lead", {{Note::Kind::kCode, "yaml", "</script><!-- a: 1"}}, {}, {}};
@@ -79,6 +80,7 @@ TEST(PageJson, RoundTripKeepsEveryMember) {
   EXPECT_EQ(plot.y.scale, Axis::Scale::kLog);
   EXPECT_EQ(plot.y.ticks.at(0).label, "one");
   EXPECT_TRUE(plot.equal_aspect);
+  EXPECT_TRUE(plot.sky);
   EXPECT_EQ(plot.link, "row");
   EXPECT_EQ(plot.height_px, 123);
   EXPECT_EQ(back.start, full_page().start);

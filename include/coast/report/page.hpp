@@ -147,6 +147,7 @@ struct Plot {
   std::vector<Bound> bounds;
   std::vector<Mark> marks;
   bool equal_aspect = false;  ///< plan view: one metre is as long in x as in y; a scale bar is drawn
+  bool sky = false;           ///< polar: zenith in the middle, north up; x east and y north, in degrees from the zenith
   std::string link;           ///< plots of one name zoom together in x; every kTime axis is linked without it
   int height_px = 0;          ///< 0: the usual height
 };

@@ -27,7 +27,7 @@ namespace coast::report {
 [[nodiscard]] Panel xy_panel(std::string id, std::string title, Axis x, Axis y, std::string caption = {});
 /// A grid of small plots, filled row by row with add_cell.
 [[nodiscard]] Panel grid_panel(std::string id, std::string title, int columns, std::string caption = {});
-/// Adds a plot over x (seconds) to a grid; the cells of one row zoom together.
+/// Adds a plot over x (seconds) to a grid; the cells of one row zoom together. @return  holds until the next cell is added
 Plot& add_cell(Panel& grid, std::string title, std::string x_label, std::string y_label, std::string unit);
 
 Line& add_line(Plot& plot, std::string label, Series series, Tone tone = Tone::kAuto);

@@ -4,8 +4,11 @@ import { logLabels, secondsOfWeek, tickLabels, withUnit } from "./format";
 import type { Axis } from "./model";
 import { colour } from "./tones";
 
+const TIME_LABELS = ["time since start, and GPS seconds of week below [s]", "time since start, GPS sow below [s]", "time, GPS sow [s]"];
 const FONT = "12px system-ui, sans-serif";
 const LABEL_FONT = "600 12px system-ui, sans-serif";
+const ROW_FONT = "11px system-ui, sans-serif";
+const ROW_LETTER = 6.2; // px
 const Y_VALUES_WIDTH = 54; // the same for all plots, so that their time axes stand below each other
 const X_SPACE = 84;
 const X_SPACE_PLAIN = 56; // without seconds of week
@@ -34,6 +37,15 @@ function base(axis: Axis): uPlot.Axis {
   };
 }
 
+/** The fullest name of the time axis that is not longer than the axis. */
+function longestThatFits(u: uPlot): string {
+  u.ctx.save();
+  u.ctx.font = LABEL_FONT;
+  const text = TIME_LABELS.find((t) => u.ctx.measureText(t).width <= u.bbox.width / devicePixelRatio) ?? TIME_LABELS[TIME_LABELS.length - 1];
+  u.ctx.restore();
+  return text;
+}
+
 function values(axis: Axis): uPlot.Axis.DynamicValues {
   if (axis.scale === "log") return (_u, splits) => logLabels(splits);
   return (_u, splits, _i, _space, step) => tickLabels(splits, step);
@@ -54,11 +66,32 @@ function named(axis: Axis): Partial<uPlot.Axis> {
   return { splits: ticks.map((t) => t[0]), values: ticks.map((t) => t[1]) };
 }
 
+/** Names of rows take at most half of a narrow plot: in two lines then, so small that rows of 25 px hold them. */
+function rowNames(axis: Axis): Partial<uPlot.Axis> {
+  const names = (axis.ticks ?? []).map((t) => t[1]);
+  const letters = Math.max(...names.map((name) => name.length));
+  const width = 14 + ROW_LETTER * letters;
+  const narrow = (u: uPlot) => width > 0.5 * u.width;
+  return {
+    ...named(axis),
+    font: ROW_FONT,
+    lineGap: 1.1,
+    values: (u) => (narrow(u) ? names.map((name) => inTwoLines(name, letters / 2)) : names),
+    size: (u) => Math.max(Y_VALUES_WIDTH + 18, narrow(u) ? 20 + ROW_LETTER * (letters / 2 + 4) : width),
+  };
+}
+
+/** Broken at the first space behind which no more than about half is left. */
+function inTwoLines(name: string, half: number): string {
+  if (name.length <= half + 4) return name;
+  const at = name.indexOf(" ", Math.floor(name.length - half - 4));
+  return at < 0 ? name : `${name.slice(0, at)}\n${name.slice(at + 1)}`;
+}
+
 export function yAxis(axis: Axis): uPlot.Axis {
   const out: uPlot.Axis = { ...base(axis), scale: "y", side: 3, space: Y_SPACE, values: values(axis), size: Y_VALUES_WIDTH };
   if (!axis.ticks?.length) return out;
-  const longest = Math.max(...axis.ticks.map((t) => t[1].length));
-  return { ...out, ...named(axis), label: out.label || undefined, size: Math.max(Y_VALUES_WIDTH + 18, 14 + 7 * longest) };
+  return { ...out, ...rowNames(axis), label: out.label || undefined };
 }
 
 export function xAxis(axis: Axis, style: XStyle): uPlot.Axis {
@@ -72,7 +105,7 @@ export function xAxis(axis: Axis, style: XStyle): uPlot.Axis {
   if (axis.scale !== "time") return out;
   const start = style.startOfWeek;
   if (start === null) return out;
-  out.label = "time since start, and GPS seconds of week below [s]";
+  out.label = longestThatFits;
   out.size = 40;
   out.values = (_u: uPlot, splits: (number | null)[], _i: number, _space: number, step: number) =>
     tickLabels(splits, step).map((text, i) => (text === "" ? "" : `${text}\n${secondsOfWeek(start + splits[i]!)}`));

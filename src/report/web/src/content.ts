@@ -1,6 +1,5 @@
 // Everything but the plots: tiles, tables, notes.
 import { el } from "./dom";
-import { withUnit } from "./format";
 import type { Note, StoredCell, StoredTable, Tile, Verdict } from "./model";
 
 const SIGNS: Record<Verdict, [string, string]> = {
@@ -71,7 +70,7 @@ export function tableView(table: StoredTable): HTMLElement {
   const head = el("tr");
   (table.columns ?? []).forEach((column, i) => {
     const cell = el("th", { scope: "col", class: column.numeric !== false ? "number" : "" });
-    const button = el("button", { type: "button", title: "order by this column" }, withUnit(column.label, column.unit));
+    const button = el("button", { type: "button", title: "order by this column" }, column.label, column.unit && " ", column.unit && el("span", { class: "unit" }, `[${column.unit}]`));
     let falling = column.numeric === false;
     button.addEventListener("click", () => {
       falling = !falling;

@@ -299,6 +299,49 @@ export function drawBounds(f: Frame, bounds: Bound[]): void {
   }
 }
 
+/** Where labels of the sky stand: just outside the horizon, which is at 90. */
+export const SKY_RANGE: Readonly<Range> = { min: -104, max: 104 };
+
+/** Rings of elevation 0, 30 and 60 deg about the zenith, spokes each 30 deg of azimuth, and the directions by name. */
+export function drawSky(f: Frame): void {
+  const { ctx } = f;
+  const X = mapX(f);
+  const Y = mapY(f);
+  const HORIZON = 90;
+  ctx.lineWidth = f.dpr;
+  ctx.strokeStyle = colour("--rule");
+  ctx.beginPath();
+  for (let azimuth = 0; azimuth < 180; azimuth += 30) {
+    const east = HORIZON * Math.sin((azimuth * Math.PI) / 180);
+    const north = HORIZON * Math.cos((azimuth * Math.PI) / 180);
+    ctx.moveTo(X(-east), Y(-north));
+    ctx.lineTo(X(east), Y(north));
+  }
+  for (const zenith of [30, 60, HORIZON]) {
+    const radius = X(zenith) - X(0);
+    ctx.moveTo(X(zenith), Y(0));
+    ctx.arc(X(0), Y(0), radius, 0, 2 * Math.PI);
+  }
+  ctx.stroke();
+  nameSky(f, X, Y, HORIZON);
+}
+
+function nameSky(f: Frame, X: Map1, Y: Map1, horizon: number): void {
+  const { ctx } = f;
+  ctx.textAlign = "center";
+  ctx.textBaseline = "middle";
+  ctx.font = `600 ${scaledFont(f)}`;
+  const outside = horizon + 7;
+  for (const [name, east, north] of [["N", 0, 1], ["E", 1, 0], ["S", 0, -1], ["W", -1, 0]] as const) {
+    label(f, name, X(outside * east), Y(outside * north));
+  }
+  ctx.font = scaledFont(f);
+  for (const elevation of [0, 30, 60]) {
+    const along = (horizon - elevation) * Math.SQRT1_2; // on the ring, to the north-east
+    label(f, `${elevation}\u00b0`, X(along), Y(along));
+  }
+}
+
 /** Text with a halo of the ground's colour, legible over curves. */
 function label(f: Frame, text: string, px: number, py: number): void {
   f.ctx.strokeStyle = colour("--ground");
@@ -347,10 +390,10 @@ export function drawScaleBar(f: Frame): void {
   label(f, text, left + length / 2, bottom - 3 * f.dpr);
 }
 
-/** All bands, then highlights and lines, then dots: nothing wide lies over something narrow. */
+/** All bands, then highlights, dots, and lines: nothing wide lies over something narrow, and dense dots hide no line. */
 export function drawCurves(f: Frame, curves: Curve[]): void {
   for (const c of curves) if (c.series.band) drawBand(f, c.series.band, c.series.sorted, c.tone);
   for (const c of curves) if (c.kind === "line" && c.size > WIDE) drawLine(f, c);
-  for (const c of curves) if (c.kind === "line" && c.size <= WIDE) drawLine(f, c);
   for (const c of curves) if (c.kind === "points") drawPoints(f, c);
+  for (const c of curves) if (c.kind === "line" && c.size <= WIDE) drawLine(f, c);
 }

@@ -25,11 +25,13 @@ export function tickLabels(values: (number | null)[], step: number): string[] {
   return values.map((v) => (v === null ? "" : withMinus(v.toFixed(decimals))));
 }
 
-/** Ticks of a log axis: plain from 0.01 to 1000, else with the power of ten. */
+/** Ticks of a log axis: all plain where that is short, else all with the power of ten. */
 export function logLabels(values: (number | null)[]): string[] {
+  const shown = values.filter((v): v is number => v !== null && v > 0);
+  const plain = shown.every((v) => v >= 0.9e-4 && v < 1.1e5);
   return values.map((v) => {
     if (v === null || v <= 0) return "";
-    return v >= 0.009 && v < 9999 ? String(Number(v.toPrecision(1))) : withMinus(v.toExponential(0).replace("+", ""));
+    return plain ? String(Number(v.toPrecision(1))) : withMinus(v.toExponential(0).replace("+", ""));
   });
 }
 

@@ -89,6 +89,7 @@ export interface StoredPlot {
   bounds?: Bound[];
   marks?: Mark[];
   equal_aspect?: boolean;
+  sky?: boolean;
   link?: string;
   height_px?: number;
 }

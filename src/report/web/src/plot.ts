@@ -2,7 +2,7 @@
 import uPlot from "uplot";
 import { xAxis, yAxis } from "./axes";
 import type { Content } from "./decode";
-import { clipped, drawBars, drawBounds, drawBoxes, drawCurves, drawIntervalLabels, drawIntervals, drawMarks, drawScaleBar, type Frame } from "./draw";
+import { clipped, drawBars, drawBounds, drawBoxes, drawCurves, drawIntervalLabels, drawIntervals, drawMarks, drawScaleBar, drawSky, SKY_RANGE, type Frame } from "./draw";
 import { equalAspect, padded, shifted, withBounds, xExtent, yExtent, zoomed } from "./extent";
 import { TIME, type Hub, type Member } from "./hub";
 import type { Range, StoredPlot } from "./model";
@@ -10,6 +10,8 @@ import { Readout } from "./readout";
 
 const Y_AIR = 0.06;
 const X_AIR = 0.02;
+const RIGHT_MARGIN = 14; // px: half a label of a tick at the very end
+const RIGHT_MARGIN_TIME = 36; // with seconds of week
 const WHEEL_RATE = 0.0015; // per pixel of wheel travel
 const WHEEL_LINE = 16; // px, where the browser counts lines
 const LEAST_SHARE = 1e-7; // of the home range: deepest zoom
@@ -46,7 +48,7 @@ export class PlotView implements Member {
     private readonly options: PlotOptions,
   ) {
     this.group = stored.link || (stored.x.scale === "time" ? TIME : "");
-    this.isPlan = stored.equal_aspect === true;
+    this.isPlan = stored.equal_aspect === true || stored.sky === true;
     this.xLog = stored.x.scale === "log";
     this.yLog = stored.y.scale === "log";
     this.extent = xExtent(content, this.xLog);
@@ -121,6 +123,7 @@ export class PlotView implements Member {
   }
 
   private homeX(): Range {
+    if (this.stored.sky) return { ...SKY_RANGE };
     if (this.stored.x.range) return { min: this.stored.x.range[0], max: this.stored.x.range[1] };
     if (this.group) return { ...this.hub.home(this.group) };
     return padded(this.extent, this.xLog, this.content.bars.length ? 0 : X_AIR);
@@ -130,7 +133,9 @@ export class PlotView implements Member {
     if (this.yHeld) return;
     const { y } = this.stored;
     const ticks = y.ticks?.map((t) => t[0]) ?? [];
-    if (ticks.length) {
+    if (this.stored.sky) {
+      this.y = { ...SKY_RANGE };
+    } else if (ticks.length) {
       this.y = { min: Math.min(...ticks) - 0.7, max: Math.max(...ticks) + 0.7 };
     } else if (y.range && this.atHome()) {
       this.y = { min: y.range[0], max: y.range[1] };
@@ -191,12 +196,12 @@ export class PlotView implements Member {
       width: Math.max(200, this.host.clientWidth),
       height: options.height,
       legend: { show: false },
-      padding: [6, 14, 0, 0],
+      padding: [6, stored.sky ? 0 : stored.x.scale === "time" && options.startOfWeek !== null ? RIGHT_MARGIN_TIME : RIGHT_MARGIN, 0, 0],
       scales: {
         x: { time: false, distr: this.xLog ? 3 : 1, range: () => [this.x.min, this.x.max] },
         y: { distr: this.yLog ? 3 : 1, range: () => [this.y.min, this.y.max] },
       },
-      axes: [xAxis(stored.x, { labels: options.xLabels, startOfWeek: options.startOfWeek }), yAxis(stored.y)],
+      axes: stored.sky ? [{ show: false }, { show: false }] : [xAxis(stored.x, { labels: options.xLabels, startOfWeek: options.startOfWeek }), yAxis(stored.y)],
       series: [{}, { scale: "y" }],
       cursor: {
         x: true,
@@ -227,7 +232,7 @@ export class PlotView implements Member {
 
   private drawBehind(u: uPlot): void {
     const f = this.frame(u);
-    clipped(f, () => drawIntervals(f, this.stored.intervals ?? []));
+    clipped(f, () => (this.stored.sky ? drawSky(f) : drawIntervals(f, this.stored.intervals ?? [])));
   }
 
   private drawData(u: uPlot): void {

@@ -33,6 +33,7 @@ export class Readout {
   at(x: number | null, y: number | null, scales: Scales): number | null {
     this.host.replaceChildren();
     if (x === null) return null;
+    if (this.stored.sky) return y === null ? null : this.onSky(x, y);
     if (this.stored.equal_aspect) return y === null ? null : this.onPlan(x, y, scales);
     if (y !== null) this.abscissa(x, scales);
     for (const curve of this.content.curves) if (this.shown(curve.label)) this.valueOf(curve, x, scales);
@@ -95,6 +96,13 @@ export class Readout {
 
   private item(toneName: string, kind: string, label: string, value: string): void {
     this.host.append(el("span", {}, swatch(toneName, kind), `${label} `, el("b", {}, value)));
+  }
+
+  private onSky(east: number, north: number): null {
+    const azimuth = ((Math.atan2(east, north) * 180) / Math.PI + 360) % 360;
+    const elevation = 90 - Math.hypot(east, north);
+    if (elevation >= 0) this.host.append(el("span", { class: "at" }, `azimuth ${azimuth.toFixed(0)}\u00b0, elevation ${elevation.toFixed(0)}\u00b0`));
+    return null;
   }
 
   private onPlan(x: number, y: number, scales: Scales): number | null {
