@@ -23,6 +23,19 @@ double median_interval(const std::vector<record::ImuSample>& samples) {
   return *middle;
 }
 
+/// Samples over the time that they cover: a clock of milliseconds has a median step that is nobody's rate.
+double rate_without_gaps(const std::vector<record::ImuSample>& samples, double usual_interval) {
+  double covered = 0.0;
+  std::size_t steps = 0;
+  for (std::size_t i = 1; i < samples.size(); ++i) {
+    const double step = samples[i].t - samples[i - 1].t;
+    if (step > kGapFactor * usual_interval) continue;
+    covered += step;
+    ++steps;
+  }
+  return static_cast<double>(steps) / covered;
+}
+
 /// Gaps, counted for one event: the first and the longest place.
 class GapLog {
  public:
@@ -69,7 +82,7 @@ void finish_imu(record::ImuRecording& recording, bool increments, TimeTag tag) {
   if (samples.size() < 2)
     throw InputError({recording.source, 0, fmt::format("{} IMU samples", samples.size()), "at least two", ""});
   const double interval = median_interval(samples);
-  recording.rate_hz = 1.0 / interval;
+  recording.rate_hz = rate_without_gaps(samples, interval);
 
   GapLog gaps;
   geo::GpsTime end_before = samples.front().t - interval;

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <bit>
+#include <cmath>
 #include <cstring>
 #include <random>
 
@@ -53,6 +54,18 @@ TEST(ImuCsv, RatesBecomeIncrementsOverIntervalsThatTileTime) {
     }
   }
   EXPECT_TRUE(imu.events.empty());
+}
+
+// 152.4 Hz on a clock of milliseconds: most steps are of 6 ms, which would be 166.67 Hz. A gap of a second counts for nothing.
+TEST(ImuCsv, RateIsThatOfTheSamplesAndNotOfTheClock) {
+  std::string text = kHeader;
+  for (int k = 0; k < 1000; ++k)
+    text += fmt::format("{:.3f},0,0,0,0,0,-9.8\n", 100.0 + (k < 500 ? 0.0 : 1.0) + 1e-3 * std::floor(6.5625 * k));
+  const Files files;
+  files.put("imu.csv", text);
+  const auto imu = files.imu("imu.csv", "gps_week: 2300");
+  EXPECT_NEAR(imu.rate_hz, 1000.0 / 6.5625, 0.05);  // both ends of 500 steps are rounded by a millisecond
+  EXPECT_EQ(count_of(imu.events, "imu_gap"), 1);
 }
 
 TEST(ImuCsv, AGapIsBridgedByLinearRates) {

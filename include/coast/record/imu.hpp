@@ -46,7 +46,7 @@ struct ImuRecording {
   std::string source;  ///< file, for messages
   std::vector<ImuSample> samples;
   std::vector<float> temperature;  ///< degC, one per sample, or empty
-  double rate_hz = 0.0;            ///< 1 / median interval
+  double rate_hz = 0.0;            ///< samples over the time without gaps
   std::vector<NoiseLevel> noise;   ///< in order, one where the other ends; empty: the same all the time
   MemberBlocks members;            ///< of a synthetic IMU whose members are told apart; empty otherwise
   Events events;                   ///< repairs and gaps found on reading
