@@ -60,7 +60,7 @@ report::Section processing_section(const ProcessPage& page) {
   section.title = "Processing";
   section.tables.push_back(settings_table(page));
   section.notes.push_back({report::Note::Kind::kInfo, "Files",
-                           "trajectory.nav, trajectory.csv (with covariance), forward.nav, summary.json, run.resolved.yaml"});
+                           joined(page.result.files, ", ") + ", summary.json, innovations.csv, run.resolved.yaml"});
   section.notes.push_back(
       {report::Note::Kind::kCode, "Resolved configuration (run.resolved.yaml): gives the same numbers again", page.resolved});
   section.notes.push_back({report::Note::Kind::kCode, "IMU error model as used, SI units", page.mission.model().yaml()});

@@ -15,11 +15,13 @@
 #include "coast/report/render.hpp"
 #include "coast/study/causes.hpp"
 #include "coast/study/outage_runs.hpp"
+#include "gnss_course.hpp"
 #include "load.hpp"
 #include "process_page.hpp"
 #include "process_result.hpp"
 #include "progress.hpp"
 #include "run_config.hpp"
+#include "scores.hpp"
 #include "state_tracks.hpp"
 #include "summary.hpp"
 #include "trajectory_output.hpp"
@@ -27,32 +29,6 @@
 namespace coast::cli {
 
 namespace {
-
-/// One solution held against the reference and, in every outage, against the truth.
-class Scores {
- public:
-  Scores(const record::Trajectory& truth, const Eigen::Vector3d& lever_arm_b, bool is_reference,
-         const std::vector<study::Outage>& outages, const estimate::Mission& mission, geo::GpsTime start)
-      : is_reference_(is_reference),
-        errors_(start),
-        comparison_(truth, lever_arm_b, [this](const study::ErrorSample& e) { errors_.add(e); }) {
-    for (const study::Outage& outage : outages) recorders_.emplace_back(outage, truth, lever_arm_b, mission);
-  }
-  Scores(const Scores&) = delete;
-  Scores& operator=(const Scores&) = delete;
-  void add(const record::TrajectoryEpoch& epoch) {
-    if (is_reference_) comparison_.add(epoch);
-    for (auto& recorder : recorders_) recorder.add(epoch);
-  }
-  [[nodiscard]] const ReferenceErrors& errors() const { return errors_; }
-  [[nodiscard]] study::OutageErrors outage(std::size_t i) const { return recorders_[i].errors(); }
-
- private:
-  bool is_reference_;
-  ReferenceErrors errors_;
-  study::Comparison comparison_;
-  std::vector<study::OutageRecorder> recorders_;
-};
 
 /// The run, stage by stage; each stage leaves its part in `result`.
 class ProcessRun {
@@ -94,7 +70,9 @@ class ProcessRun {
   [[nodiscard]] estimate::FilterOptions options_with_outages() const;
   [[nodiscard]] std::optional<estimate::FilterState> carried(const estimate::FilterOptions& options);
   [[nodiscard]] std::optional<estimate::BackwardKnots> backward(const estimate::FilterOptions& options);
+  void add_writers(TrajectoryOutput& forward, TrajectoryOutput& delivered) const;
   void count_innovations();
+  void note_time_offset(double prepared);
   void note_scores(const std::vector<study::Outage>& gaps, const Scores& forward, const Scores& smoothed);
   void note_estimates() const;
   void doubt_lever_arm();
@@ -138,15 +116,22 @@ void ProcessRun::describe_input() {
   result_.start = mission_.start().nav.t;
   result_.end = mission.imu.samples.back().t;
   result_.alignment = mission_.start().method;
+  result_.files = trajectory_files(config_.output);
   result_.noise_fit = mission_.noise_fit();
   result_.events.insert(result_.events.end(), adaptations().begin(), adaptations().end());
+  const auto met = [&](geo::GpsTime tagged) {  // by the filter, to whose tolerance
+    constexpr double kTolerance = 2e-6;        // s
+    const geo::GpsTime t = tagged - mission.time_offset_s;
+    return t - result_.start >= -kTolerance && t - result_.end <= kTolerance;
+  };
   std::map<record::FixQuality, std::size_t> counts;
   for (const record::GnssFix& fix : mission.gnss.fixes)
-    if (fix.t >= result_.start && fix.t <= result_.end) {
-      ++result_.gnss_epochs;
-      ++counts[fix.quality];
-    }
+    if (met(fix.t)) ++counts[fix.quality];
   result_.qualities.assign(counts.begin(), counts.end());
+  for (const auto& [quality, count] : result_.qualities) result_.gnss_epochs += count;
+  if (mission.carrier == nullptr) return;
+  result_.gnss_epochs =
+      static_cast<std::size_t>(std::ranges::count_if(mission.carrier->epochs, [&](const auto& epoch) { return met(epoch.t); }));
 }
 
 std::vector<study::Outage> ProcessRun::outages() const {
@@ -194,16 +179,19 @@ void ProcessRun::run_earlier_passes() {
   backward_ = backward(options_with_outages());
 }
 
+void ProcessRun::add_writers(TrajectoryOutput& forward, TrajectoryOutput& delivered) const {
+  for (const std::string& format : config_.output.formats) {
+    if (format == "nav") forward.add_writer(io::make_nav_writer(out_ / "forward.nav"));
+    delivered.add_writer(io::make_trajectory_writer(format, out_ / "trajectory", geoid_height(config_)));
+  }
+}
+
 void ProcessRun::solve_and_write() {
   const std::vector<study::Outage> gaps = outages();
   const bool keep_gap_free = gaps.empty() && config_.sweep && !reference_;
   TrajectoryOutput forward_output(config_.output);
   TrajectoryOutput output(config_.output);
-  forward_output.add_writer(io::make_nav_writer(out_ / "forward.nav"));
-  output.add_writer(io::make_nav_writer(out_ / "trajectory.nav"));
-  output.add_writer(io::make_csv_writer(out_ / "trajectory.csv"));
-  for (const std::string& format : config_.output.formats)
-    if (format != "nav" && format != "csv") output.add_writer(io::make_trajectory_writer(format, out_ / "trajectory"));
+  add_writers(forward_output, output);
 
   const record::Trajectory& truth = reference_ ? *reference_ : gap_free_.trajectory();
   const Eigen::Vector3d arm = reference_ ? config_.reference_lever_arm_b : Eigen::Vector3d::Zero();
@@ -222,11 +210,15 @@ void ProcessRun::solve_and_write() {
     motion_.add(epoch);
     if (keep_gap_free) gap_free_.add(epoch);
   });
-  const auto deliver = [&](const record::TrajectoryEpoch& epoch) {
+  GnssCourse gnss(mission_.mission());
+  if (config_.tight) gnss.add_all_but(options_with_outages().withheld);
+  const auto deliver = [&](record::TrajectoryEpoch epoch) {
+    epoch.gnss = gnss.at(epoch.nav.t);
     write.add(epoch);
     draw.add(epoch);
   };
   study::SolutionOutputs outputs;
+  outputs.measurements = [&](const estimate::Measurement& what, bool used) { gnss.add(what, used); };
   outputs.forward = [&](const record::TrajectoryEpoch& epoch) {
     write_forward.add(epoch);
     draw_forward.add(epoch);
@@ -249,6 +241,17 @@ void ProcessRun::solve_and_write() {
   note_scores(gaps, forward_scores, scores);
   result_.states = state_tracks(solution_.filter->layout(), result_.start, forward_knots_.knots(), solution_.smoothed);
   if (const auto event = unseen_base_offset(result_.states)) result_.events.push_back(*event);
+  note_time_offset(mission_.mission().time_offset_s);
+}
+
+// The state of the offset is about the one that the preparation found.
+void ProcessRun::note_time_offset(double prepared) {
+  result_.time_offset_s = prepared;
+  const auto track = std::ranges::find(result_.states, "gnss_time_offset", &StateTrack::name);
+  if (track == result_.states.end() || track->forward.empty()) return;
+  const bool smoothed = !track->smoothed.empty();
+  result_.time_offset_s += smoothed ? track->smoothed.back() : track->forward.back();
+  result_.time_offset_sd_s = smoothed ? track->smoothed_sd.back() : track->forward_sd.back();
 }
 
 void ProcessRun::note_scores(const std::vector<study::Outage>& gaps, const Scores& forward, const Scores& smoothed) {
@@ -356,7 +359,7 @@ void ProcessRun::judge() {
   const estimate::FilterState& last = solution_.forward.last;
   if (auto check = sensor_check(solution_.filter->layout(), last.x)) checks.push_back(std::move(*check));
   result_.verdict = cli::judge(result_, std::move(checks));
-  if (result_.verdict.standing() != Standing::kGood) rank_causes();
+  if (result_.verdict.standing() != Standing::kGood && !result_.verdict.only_jumps()) rank_causes();
   result_.verdict.accepted = config_.accept;
 }
 
@@ -462,9 +465,10 @@ void process(const std::filesystem::path& run_yaml, const CommonOptions& options
   const study::Progress progress = line.stages();
   const RunConfig config = read_run_config(run_yaml);
   Recordings recordings = load(config, progress);
-  const std::filesystem::path out = output_folder(run_yaml, options.out,
-                                                  {"forward.nav", "trajectory.nav", "trajectory.csv", "run.resolved.yaml",
-                                                   "summary.json", "innovations.csv", "report.json", "report.html"});
+  std::vector<std::string> files = trajectory_files(config.output);
+  for (const char* file : {"run.resolved.yaml", "summary.json", "innovations.csv", "report.json", "report.html"})
+    files.emplace_back(file);
+  const std::filesystem::path out = output_folder(run_yaml, options.out, files);
   line.clear();
   study::Setup setup = setup_of(config, recordings, config.sweep);
   setup.unstated = config.setup.unstated;

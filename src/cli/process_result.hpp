@@ -80,6 +80,9 @@ struct ProcessResult {
   std::size_t gnss_used = 0;
   std::size_t gnss_rejected = 0;
   std::vector<std::pair<record::FixQuality, std::size_t>> qualities;  ///< epochs by quality
+  double time_offset_s = 0.0;                                         ///< of the fixes' tags, as used
+  std::optional<double> time_offset_sd_s;                             ///< where it was estimated
+  std::vector<std::string> files;                                     ///< of the trajectory
   std::vector<std::string> inspection;  ///< what was understood of the input, sentence by sentence
   std::string alignment;
   NisSummary nis;

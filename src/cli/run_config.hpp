@@ -37,7 +37,7 @@ struct OutageSeconds {
 
 struct OutputOptions {
   std::optional<double> rate_hz;                      ///< absent: IMU epochs
-  std::vector<std::string> formats;                   ///< beyond trajectory.nav, forward.nav and trajectory.csv
+  std::vector<std::string> formats{"nav", "csv"};     ///< of the trajectory; forward.nav comes with nav
   Eigen::Vector3d point_b = Eigen::Vector3d::Zero();  ///< IMU to the point that the trajectory refers to, m
 };
 

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
 
@@ -104,6 +105,18 @@ Json separation_json(const std::vector<Separation>& separations) {
   return j;
 }
 
+/// @param written  of the trajectory: trajectory.nav and others of that name, forward.nav
+Json files_json(const std::vector<std::string>& written) {
+  const auto has = [&](const char* file) { return std::ranges::find(written, file) != written.end(); };
+  Json j;
+  if (!written.empty()) j["trajectory"] = written.front();
+  if (has("forward.nav")) j["forward"] = "forward.nav";
+  if (has("trajectory.csv")) j["covariance"] = "trajectory.csv";
+  j["report"] = "report.html";
+  j["resolved"] = "run.resolved.yaml";
+  return j;
+}
+
 Json verdict_json(const Judgement& verdict) {
   Json j{{"standing", name(verdict.standing())}, {"accepted", verdict.accepted}};
   if (!verdict.likely_cause.empty()) j["likely_cause"] = verdict.likely_cause;
@@ -152,6 +165,8 @@ std::string summary_json(const ProcessResult& result) {
   j["verdict"] = verdict_json(result.verdict);
   j["imu"] = {{"samples", result.imu_samples}, {"rate_hz", result.imu_rate_hz}, {"gaps", result.imu_gaps}};
   j["gnss"] = {{"epochs", result.gnss_epochs}, {"used", result.gnss_used}, {"rejected", result.gnss_rejected}};
+  j["gnss"]["time_offset_s"] = result.time_offset_s;
+  if (result.time_offset_sd_s) j["gnss"]["time_offset_sd_s"] = *result.time_offset_sd_s;
   if (result.nis.epochs > 0)
     j["nis"] = {{"mean", result.nis.mean}, {"expected", result.nis.expected}, {"epochs", result.nis.epochs}};
   j["span"] = {{"week", result.start.week()}, {"start_s", result.start.sow()}, {"end_s", result.end.sow()}};
@@ -177,11 +192,7 @@ std::string summary_json(const ProcessResult& result) {
     if (!track.smoothed.empty())
       j["states_at_end"][track.name] = {{"value", track.smoothed.back()}, {"sd", track.smoothed_sd.back()}};
   j["events"] = events_json(result.events);
-  j["files"] = {{"trajectory", "trajectory.nav"},
-                {"forward", "forward.nav"},
-                {"covariance", "trajectory.csv"},
-                {"report", "report.html"},
-                {"resolved", "run.resolved.yaml"}};
+  j["files"] = files_json(result.files);
   return j.dump(1) + "\n";
 }
 

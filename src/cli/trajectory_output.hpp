@@ -12,6 +12,11 @@
 
 namespace coast::cli {
 
+/// The files of the trajectory that a run writes.
+[[nodiscard]] std::vector<std::string> trajectory_files(const OutputOptions& options);
+/// Height of the geoid above what the trajectory's heights count from, where that is known, m.
+[[nodiscard]] std::optional<double> geoid_height(const RunConfig& config);
+
 /// Writes a streamed trajectory to several files, at the wanted rate and for the wanted point of the body.
 class TrajectoryOutput {
  public:
@@ -23,7 +28,8 @@ class TrajectoryOutput {
  private:
   const OutputOptions& options_;
   std::vector<std::unique_ptr<io::TrajectoryWriter>> writers_;
-  study::PassingRate rate_;
+  study::PassingMotion motion_;
+  study::PassingMotion motion_at_point_;
   std::optional<geo::GpsTime> last_written_;
 };
 

@@ -29,6 +29,15 @@ Standing Judgement::standing() const {
   return worst;
 }
 
+namespace {
+constexpr const char* kJumps = "gnss_jumps";
+}  // namespace
+
+bool Judgement::only_jumps() const {
+  return std::ranges::all_of(
+      checks, [](const Check& check) { return (check.standing() == Standing::kGood) != (check.name == kJumps); });
+}
+
 std::string Judgement::line() const {
   std::string text = fmt::format("verdict: {}", name(standing()));
   if (standing() == Standing::kGood) return text + fmt::format(", {} checks passed", checks.size());
@@ -180,21 +189,18 @@ const record::Event* find(const record::Events& events, std::string_view kind) {
   return found == events.end() ? nullptr : &*found;
 }
 
-// Fixes that were refused and then followed: a jump that stays, and either side of it may be the wrong one. Behind a studied
-// outage it is the drift that was larger than predicted.
+// Where outages are studied it is they behind which the drift was larger than predicted.
 void add_jumps(const ProcessResult& result, std::vector<Check>& checks) {
+  const auto count = [&](const char* kind) {
+    return static_cast<double>(std::ranges::count(result.events, kind, &record::Event::kind));
+  };
+  const record::Event* jump = find(result.events, "gnss_jump");
+  const double jumps = count("gnss_jump");
+  const std::string others = jumps > 1.0 ? fmt::format(" (the first of {:.0f} jumps)", jumps) : "";
+  checks.push_back({kJumps, jumps, 0.0, {}, jump == nullptr ? "" : jump->text + others});
   if (!result.outages.empty()) return;
-  const auto jumps = std::ranges::count(result.events, "gate_opened", &record::Event::kind);
-  const record::Event* first = find(result.events, "gate_opened");
-  checks.push_back(
-      {"gnss_jumps",
-       static_cast<double>(jumps),
-       0.0,
-       {},
-       first == nullptr || !first->time
-           ? ""
-           : fmt::format("GNSS jumped and stayed there {} time{}, first at {:.1f} s of week: either side may be wrong", jumps,
-                         jumps == 1 ? "" : "s", first->time->sow())});
+  const record::Event* drift = find(result.events, "gate_opened");
+  checks.push_back({"drift_behind_outages", count("gate_opened"), 0.0, {}, drift == nullptr ? "" : drift->text});
 }
 
 void add_assumed_heading(const ProcessResult& result, std::vector<Check>& checks) {
@@ -209,7 +215,10 @@ void add_lever_arm(const ProcessResult& result, std::vector<Check>& checks) {
 }
 
 // Mistakes in the order in which each hides the ones behind it.
-std::string likely_cause(const ProcessResult& result) {
+std::string likely_cause(const ProcessResult& result, const Judgement& judgement) {
+  if (judgement.only_jumps())
+    return "from there on another base, height reference or antenna place, or wrongly fixed ambiguities on one side. Find out "
+           "which side is right, and process the two apart";
   for (const char* kind :
        {"specific_force_unit", "specific_force_size", "gravity_sign", "gravity_axis", "gyro_sign", "gyro_unit",
         "leap_second_shift", "time_shift", "lever_arm_contradicted", "travel_direction", "gnss_sigmas_do_not_fit"})
@@ -235,7 +244,7 @@ Judgement judge(const ProcessResult& result, std::vector<Check> motion) {
   add_jumps(result, judgement.checks);
   add_assumed_heading(result, judgement.checks);
   add_lever_arm(result, judgement.checks);
-  if (judgement.standing() != Standing::kGood) judgement.likely_cause = likely_cause(result);
+  if (judgement.standing() != Standing::kGood) judgement.likely_cause = likely_cause(result, judgement);
   return judgement;
 }
 

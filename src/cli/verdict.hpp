@@ -30,6 +30,8 @@ struct Judgement {
   std::vector<study::Cause> causes = {};  ///< by likelihood, the likeliest first
   bool accepted = false;                  ///< by the configuration
   [[nodiscard]] Standing standing() const;
+  /// Whether jumps of GNSS are all that is wrong: they are no mistake of the description.
+  [[nodiscard]] bool only_jumps() const;
   /// "good: .." or the checks that failed and the likely cause, a line.
   [[nodiscard]] std::string line() const;
 };

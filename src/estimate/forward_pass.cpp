@@ -202,13 +202,18 @@ void ForwardPass::take_gnss(std::size_t index) {
     carrier_updates(highest(epoch, static_cast<std::size_t>(withheld->satellites_left)));
 }
 
+std::optional<Eigen::Vector3d> ForwardPass::seen_alone(const carrier::DifferenceEpoch& epoch, const UpdateContext& here) const {
+  if (!epoch.alone) return std::nullopt;
+  return epoch.alone->r_e - antenna_position(state_, here).value_e;
+}
+
 void ForwardPass::carrier_updates(const carrier::DifferenceEpoch& epoch) {
   const UpdateContext here = context();
   TightCoupling::Outcome outcome = tight_->update(epoch, here, state_, knot_);
   if (!outcome.contradicted) {
     gate_state_ = GateState::kClosed;
-  } else if (epoch.alone && refuse()) {
-    admit_doubt(epoch.alone->r_e - antenna_position(state_, here).value_e);
+  } else if (const auto nu = seen_alone(epoch, here); nu && refuse(*nu)) {
+    admit_doubt(*nu);
     outcome = tight_->update(epoch, here, state_, knot_);
   }
   result_.log_likelihood += outcome.log_likelihood;
@@ -301,22 +306,38 @@ bool ForwardPass::gate_refuses(const Linearised& measurement, double nis) {
     gate_state_ = GateState::kClosed;
     return false;
   }
-  return !refuse();
+  return !refuse(measurement.nu);
 }
 
-bool ForwardPass::refuse() {
+bool ForwardPass::refuse(const Eigen::Vector3d& nu_e) {
   if (gate_state_ == GateState::kClosed) {
     gate_state_ = GateState::kRefusing;
     first_refused_ = state_.nav.t;
   }
   if (gate_state_ == GateState::kRefusing && state_.nav.t - first_refused_ >= options_.gate_patience_s) {
     gate_state_ = GateState::kOpen;
-    result_.events.push_back({record::Event::Severity::kWarning, "gate_opened",
-                              fmt::format("GNSS positions were refused for {:.1f} s without a break; from here they are taken",
-                                          state_.nav.t - first_refused_),
-                              state_.nav.t, 1});
+    note_opened(C_n_e_.transpose() * nu_e);
   }
   return gate_state_ == GateState::kOpen;
+}
+
+// Fixes that come all along and differ from one instant on have jumped; behind an outage it is the filter that has drifted.
+void ForwardPass::note_opened(const Eigen::Vector3d& nu_n) {
+  const std::string by =
+      fmt::format("{:.2f} m ({:+.2f} north, {:+.2f} east, {:+.2f} up)", nu_n.norm(), nu_n.x(), nu_n.y(), -nu_n.z());
+  if (coasting())
+    result_.events.push_back({record::Event::Severity::kWarning, "gate_opened",
+                              fmt::format("GNSS positions behind an outage differ by {} from the filter's, which drifted more "
+                                          "than it thought; after {:.1f} s they are taken",
+                                          by, state_.nav.t - first_refused_),
+                              state_.nav.t, 1});
+  else
+    result_.events.push_back(
+        {record::Event::Severity::kWarning, "gnss_jump",
+         fmt::format("GNSS positions jumped by {} at {:.1f} s of week and stayed there. They were refused "
+                     "for {:.1f} s and are followed from there on; either side of the jump may be the wrong one",
+                     by, first_refused_.sow(), state_.nav.t - first_refused_),
+         first_refused_, 1});
 }
 
 // Behind an outage the filter is not confident: its drift was larger than it thought, and everything that drifted along has to

@@ -38,8 +38,12 @@ class ForwardPass {
   /// @return whether it was used; nothing where it does not apply
   std::optional<bool> try_update(const Measurement& measurement, record::FixQuality quality = record::FixQuality::kUnknown);
   [[nodiscard]] bool gate_refuses(const Linearised& measurement, double nis);
+  /// Where the code of one receiver alone sees the antenna, less where the filter has it.
+  [[nodiscard]] std::optional<Eigen::Vector3d> seen_alone(const carrier::DifferenceEpoch& epoch,
+                                                          const UpdateContext& here) const;
   /// Of positions. @return whether the filter has refused for so long that it is wrong itself
-  bool refuse();
+  bool refuse(const Eigen::Vector3d& nu_e);
+  void note_opened(const Eigen::Vector3d& nu_n);
   [[nodiscard]] bool coasting() const;
   void admit_doubt(const Eigen::Vector3d& nu);
   void record_innovation(const Linearised& measurement, const Innovation& innovation, bool used, record::FixQuality quality);

@@ -1,4 +1,4 @@
-// SBET with SMRMSG. The body's specific force and rate are not part of a trajectory epoch; they are written as zero.
+// SBET with SMRMSG.
 
 #include <array>
 #include <cmath>
@@ -49,7 +49,9 @@ class SbetWriter final : public TrajectoryWriter {
     for (const double value : {t, p.latitude, p.longitude, p.height, v_eb_n.x(), v_eb_n.y(), v_eb_n.z(), attitude.roll,
                                attitude.pitch, attitude.yaw})
       sbet_.put(value);
-    for (int i = 0; i < 7; ++i) sbet_.put(0.0);  // wander angle, specific force, angular rate
+    sbet_.put(0.0);  // wander angle
+    for (const double a : epoch.motion.a_eb_b) sbet_.put(a);
+    for (const double omega : epoch.motion.omega_eb_b) sbet_.put(omega);
     sbet_.end_record();
     write_uncertainty(t, epoch.cov, geo::euler_jacobian(attitude));
   }

@@ -165,8 +165,15 @@ constexpr std::string_view kPosHeader =
 constexpr std::string_view kPosVelocityHeader =
     "    vn(m/s)    ve(m/s)    vu(m/s)     sdvn     sdve     sdvu    sdvne    sdveu    sdvun";
 
+/// RTKLIB's Q of a fix; unknown ones count as single.
+int quality_number(record::FixQuality quality) {
+  return static_cast<int>(quality == record::FixQuality::kUnknown ? record::FixQuality::kSingle : quality);
+}
+
+constexpr int kDeadReckoning = 7;  // RTKLIB's Q of a solution without GNSS
+
 /// One line of a `.pos` file; the velocity may be absent.
-void put_pos_line(TextBuffer& text, const record::GnssFix& fix) {
+void put_pos_line(TextBuffer& text, const record::GnssFix& fix, int quality) {
   const geo::Geodetic p = geo::geodetic_from_ecef(fix.r_ea_e);
   put_calendar(text, fix.t);
   text.put(' ');
@@ -178,8 +185,7 @@ void put_pos_line(TextBuffer& text, const record::GnssFix& fix) {
   text.put(' ');
   text.put_fixed(p.height, 4 + more, 10 + more);
   text.put(' ');
-  text.put_integer(static_cast<int>(fix.quality == record::FixQuality::kUnknown ? record::FixQuality::kSingle : fix.quality),
-                   3);
+  text.put_integer(quality, 3);
   text.put(' ');
   text.put_integer(fix.satellites.value_or(0), 3);
   put_signed_roots(text, fix.position_cov_n, more);
@@ -214,8 +220,11 @@ class PosWriter final : public TrajectoryWriter {
     fix.position_cov_n = epoch.cov.position;
     const Eigen::Matrix3d C_n_e = geo::C_n_e(geo::geodetic_from_ecef(fix.r_ea_e));
     fix.velocity = {C_n_e.transpose() * epoch.nav.v_eb_e, epoch.cov.velocity};
-    fix.quality = record::FixQuality::kFixed;
-    put_pos_line(text_, fix);
+    const record::GnssSupport gnss = epoch.gnss.value_or(record::GnssSupport{});
+    fix.satellites = gnss.satellites;
+    fix.age_s = gnss.age_s;
+    fix.ratio = gnss.ratio;
+    put_pos_line(text_, fix, epoch.gnss ? quality_number(gnss.quality) : kDeadReckoning);
   }
   void close() override {
     text_.flush();
@@ -241,7 +250,8 @@ std::unique_ptr<TrajectoryWriter> make_pos_writer(const std::filesystem::path& p
   return std::make_unique<PosWriter>(path);
 }
 
-std::unique_ptr<TrajectoryWriter> make_trajectory_writer(std::string_view format, const std::filesystem::path& stem) {
+std::unique_ptr<TrajectoryWriter> make_trajectory_writer(std::string_view format, const std::filesystem::path& stem,
+                                                         std::optional<double> geoid_height_m) {
   const auto with = [&](const char* extension) {
     std::filesystem::path path = stem;
     path += extension;
@@ -251,7 +261,7 @@ std::unique_ptr<TrajectoryWriter> make_trajectory_writer(std::string_view format
   if (format == "csv") return make_csv_writer(with(".csv"));
   if (format == "sbet") return make_sbet_writer(with(".sbet"), with(".smrmsg"));
   if (format == "pos") return make_pos_writer(with(".pos"));
-  if (format == "kml") return make_kml_writer(with(".kml"), stem.filename().string());
+  if (format == "kml") return make_kml_writer(with(".kml"), stem.filename().string(), geoid_height_m);
   throw std::invalid_argument(fmt::format("format: no trajectory format \"{}\"", format));
 }
 
@@ -270,7 +280,7 @@ void write_gnss_pos(const std::filesystem::path& path, const record::GnssRecordi
   text.end_line();
   for (record::GnssFix fix : gnss.fixes) {
     if (!velocities) fix.velocity.reset();  // every row has the same columns
-    put_pos_line(text, fix);
+    put_pos_line(text, fix, quality_number(fix.quality));
   }
   text.flush();
   file.commit();

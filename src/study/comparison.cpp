@@ -60,7 +60,7 @@ void Comparison::add(const record::TrajectoryEpoch& epoch) {
                                                       [](const record::NavState& nav, geo::GpsTime t) { return nav.t < t; }) -
                                      states.begin());
   }
-  const Eigen::Vector3d& rate = rate_.at(epoch.nav);
+  const Eigen::Vector3d& rate = motion_.at(epoch.nav).omega_eb_b;
   for (; next_ < states.size() && states[next_].t <= epoch.nav.t; ++next_) {
     record::TrajectoryEpoch at = epoch;
     if (previous_) at.nav = interpolate(previous_->nav, epoch.nav, states[next_].t);

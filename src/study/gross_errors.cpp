@@ -14,13 +14,30 @@ constexpr double kErrorSigmas = 6.0;
 constexpr double kLeastError = 5.0;   // m: smaller errors are the gate's business
 constexpr double kLongestGap = 60.0;  // s to a neighbour; beyond it nothing is known
 
+double possible(double seconds_squared, double variance) {
+  return std::max(kLeastError, 0.5 * kAcceleration * seconds_squared + kErrorSigmas * std::sqrt(variance));
+}
+
+// Whether a fix lies where the two on one side of it lead: it is not the fix that is wrong where positions jump and stay.
+bool continues(const record::GnssFix& far, const record::GnssFix& near, const record::GnssFix& fix) {
+  const double a = near.t - far.t, b = fix.t - near.t;  // both negative behind the fix
+  const Eigen::Vector3d led_to = near.r_ea_e + (b / a) * (near.r_ea_e - far.r_ea_e);
+  const double variance = fix.position_cov_n.trace() + far.position_cov_n.trace() + near.position_cov_n.trace();
+  return (fix.r_ea_e - led_to).norm() < possible(b * (a + b), variance);
+}
+
+bool continues_a_side(const std::vector<record::GnssFix>& fixes, std::size_t i) {
+  return (i >= 2 && continues(fixes[i - 2], fixes[i - 1], fixes[i])) ||
+         (i + 2 < fixes.size() && continues(fixes[i + 2], fixes[i + 1], fixes[i]));
+}
+
 // By how much the distance from the line exceeds what is possible, m; at most zero for a possible fix.
 double excess(const record::GnssFix& before, const record::GnssFix& fix, const record::GnssFix& after) {
   const double a = fix.t - before.t, b = after.t - fix.t;
   if (a > kLongestGap || b > kLongestGap) return 0.0;
   const Eigen::Vector3d line = (b * before.r_ea_e + a * after.r_ea_e) / (a + b);
   const double variance = fix.position_cov_n.trace() + before.position_cov_n.trace() + after.position_cov_n.trace();
-  return (fix.r_ea_e - line).norm() - std::max(kLeastError, 0.5 * kAcceleration * a * b + kErrorSigmas * std::sqrt(variance));
+  return (fix.r_ea_e - line).norm() - possible(a * b, variance);
 }
 
 }  // namespace
@@ -36,7 +53,7 @@ void leave_out_gross_errors(record::GnssRecording& gnss, record::Events& events)
     std::vector<record::GnssFix> kept;
     kept.reserve(fixes.size());
     for (std::size_t i = 0; i < fixes.size(); ++i) {
-      const bool gross = out[i] > 0.0 && out[i] >= out[i - 1] && out[i] >= out[i + 1];
+      const bool gross = out[i] > 0.0 && out[i] >= out[i - 1] && out[i] >= out[i + 1] && !continues_a_side(fixes, i);
       if (!gross) {
         kept.push_back(std::move(fixes[i]));
         continue;

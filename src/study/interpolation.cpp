@@ -67,13 +67,19 @@ Eigen::Vector3d mean_rate(const record::NavState& a, const record::NavState& b) 
   return geo::rotation_vector(a.q_b_e.conjugate() * b.q_b_e) / dt;
 }
 
-const Eigen::Vector3d& PassingRate::at(const record::NavState& nav) {
+Eigen::Vector3d mean_acceleration(const record::NavState& a, const record::NavState& b) {
+  const double dt = b.t - a.t;
+  if (!(dt > 0.0)) return Eigen::Vector3d::Zero();
+  return a.q_b_e.slerp(0.5, b.q_b_e).conjugate() * ((b.v_eb_e - a.v_eb_e) / dt);
+}
+
+const record::BodyMotion& PassingMotion::at(const record::NavState& nav) {
   if (previous_) {
     held_ = !held_ && corrected_between(*previous_, nav);  // a body that shakes is corrected nowhere: never for long
-    if (!held_) rate_ = mean_rate(*previous_, nav);
+    if (!held_) motion_ = {mean_rate(*previous_, nav), mean_acceleration(*previous_, nav)};
   }
   previous_ = nav;
-  return rate_;
+  return motion_;
 }
 
 }  // namespace coast::study

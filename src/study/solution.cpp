@@ -92,6 +92,11 @@ Solution solve(const PreparedMission& mission, const estimate::FilterOptions& op
     };
   estimate::FilterOutputs filter_outputs;
   if (smooth && !carried) filter_outputs = for_smoother;
+  if (outputs.measurements)
+    filter_outputs.measurements = [&, for_batch = filter_outputs.measurements](const estimate::Measurement& what, bool used) {
+      outputs.measurements(what, used);
+      if (for_batch) for_batch(what, used);
+    };
   filter_outputs.epochs = outputs.forward;
   filter_outputs.at_knots = outputs.at_knots;
   filter_outputs.progress = stage(progress, "filtering forward");

@@ -126,6 +126,40 @@ TEST(Commands, RepeatsAFitOfNoiseAndTimeOffsetFromTheResolvedFile) {
   for (const char* estimated : {"gyro_factor", "scale_horizontal", "# time_offset_s: "})
     EXPECT_NE(resolved.find(estimated), std::string::npos) << resolved;
   EXPECT_EQ(text_of(folder.path() / "first" / "trajectory.nav"), text_of(folder.path() / "again" / "trajectory.nav"));
+  const auto gnss = nlohmann::json::parse(text_of(folder.path() / "first" / "summary.json"))["gnss"];
+  const double sd = gnss["time_offset_sd_s"];
+  EXPECT_LT(sd, 0.01);
+  EXPECT_NEAR(gnss["time_offset_s"].get<double>(), 0.0, 4.0 * sd);  // begun 0.05 s off
+  EXPECT_LE(gnss["used"].get<long>() + gnss["rejected"].get<long>(), gnss["epochs"].get<long>()) << gnss;
+}
+
+// An outage is withheld from 150 to 170 s after the start; fixes come each 0.2 s.
+TEST(Commands, WritesTheListedFormatsAloneAndSaysInPosWhereGnssWasMissing) {
+  const test::TemporaryDirectory folder;
+  write(recording() / "formats.yaml", text_of(recording() / "run.yaml") + "\noutput: {formats: [pos, kml], rate_hz: 10}\n");
+  const fs::path out = folder.path() / "out";
+  const Outcome outcome =
+      run(fmt::format("process '{}' --out '{}'", (recording() / "formats.yaml").string(), out.string()), folder.path());
+  ASSERT_EQ(outcome.status, 0) << outcome.error;
+  for (const char* name : {"trajectory.pos", "trajectory.kml"}) EXPECT_TRUE(fs::exists(out / name)) << name;
+  for (const char* name : {"trajectory.nav", "forward.nav", "trajectory.csv", "trajectory.sbet"})
+    EXPECT_FALSE(fs::exists(out / name)) << name;
+  const auto summary = nlohmann::json::parse(text_of(out / "summary.json"));
+  test::expect_valid("summary", summary);
+  EXPECT_EQ(summary["files"]["trajectory"], "trajectory.pos");
+  EXPECT_FALSE(summary["files"].contains("forward"));
+  std::istringstream rows(text_of(out / "trajectory.pos"));
+  long without = 0, fixed = 0, other = 0;
+  for (std::string row; std::getline(rows, row);) {
+    if (row.starts_with('%')) continue;
+    std::istringstream words(row);
+    std::string date, time, latitude, longitude, height, quality;
+    words >> date >> time >> latitude >> longitude >> height >> quality;
+    ++(quality == "7" ? without : quality == "1" ? fixed : other);
+  }
+  EXPECT_NEAR(static_cast<double>(without), 200.0, 8.0);  // up to 0.3 s at either end rest on a fix
+  EXPECT_GT(fixed, 3000);
+  EXPECT_EQ(other, 0);
 }
 
 /// What `process` says of a run of the recording. @param name  of run.yaml beside the recording, and of the result in `folder`

@@ -213,6 +213,21 @@ fs::path ensemble_study(const fs::path& folder, const std::string& keys) {
   return folder / "study.yaml";
 }
 
+/// Plots of a page without a line or a point.
+std::vector<std::string> empty_plots(const nlohmann::json& page) {
+  std::vector<std::string> empty;
+  for (const auto& section : page["sections"]) {
+    if (!section.contains("panels")) continue;
+    for (const auto& panel : section["panels"])
+      for (const auto& plot : panel["plots"]) {
+        const auto none = [&plot](const char* key) { return !plot.contains(key) || plot[key].empty(); };
+        if (none("lines") && none("points") && none("bars") && none("boxes"))
+          empty.push_back(fmt::format("{}: {}", panel["id"].get<std::string>(), plot.value("title", "")));
+      }
+  }
+  return empty;
+}
+
 TEST(OutageStudy, SweepsSimulatedRecordings) {
   const test::TemporaryDirectory folder;
   const fs::path study = ensemble_study(folder.path(), "sweep: {every_s: 70, first_s: 120, durations_s: [5, 40, 100]}\n");
@@ -238,6 +253,8 @@ TEST(OutageStudy, SweepsSimulatedRecordings) {
   ASSERT_EQ(rows.size(), 14U);  // start by start, seed by seed
   EXPECT_EQ(rows[3].at("start_s"), "190");
   EXPECT_EQ(rows[3].at("seed"), "4");
+  const auto page = nlohmann::json::parse(text_of(out / "report.json"));
+  EXPECT_EQ(empty_plots(page), (std::vector<std::string>{}));
 }
 
 TEST(OutageStudy, SmoothsAsABatchWhereAsked) {

@@ -333,6 +333,10 @@ TEST_F(PageTest, TilesJudgeByTheirStatedThresholds) {
   EXPECT_EQ(lever_arm({0.00, 0.0, 0.3}, {0.01, 0.01, 0.40}), report::Verdict::kGood);  // down is not known: not judged
   EXPECT_EQ(lever_arm({0.30, 0.3, 0.3}, {0.40, 0.40, 0.40}), report::Verdict::kNone);
 
+  config_.setup.filter.auxiliary.lever_arm_sd_m = 0.3;  // an arm to be found is as far off as it was said it may be
+  EXPECT_EQ(lever_arm({0.00, 0.0, 0.5}, {0.01, 0.01, 0.01}), report::Verdict::kGood);
+  EXPECT_EQ(lever_arm({0.00, 0.0, 1.0}, {0.01, 0.01, 0.01}), report::Verdict::kWarn);
+
   EXPECT_EQ(tile(make(result), "Warnings")->value, "1");
   EXPECT_EQ(tile(make(result), "GNSS quality")->value, "70.0 / 30.0");
   EXPECT_EQ(tile(make(result), "GNSS quality")->verdict, report::Verdict::kWarn);

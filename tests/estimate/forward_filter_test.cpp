@@ -124,13 +124,29 @@ TEST_F(ForwardFilterTest, GateOpensWhenItIsTheFilterThatIsWrong) {
     if (fix.t - test::mission_start() > 10.0) fix.r_ea_e += Eigen::Vector3d(4.0, 0.0, 0.0);
   const FilterResult result = run({});
   ASSERT_EQ(result.events.size(), 1u);
-  EXPECT_EQ(result.events[0].kind, "gate_opened");
-  EXPECT_NEAR(*result.events[0].time - test::mission_start(), 10.0 + options_.gate_patience_s, 0.5);
+  EXPECT_EQ(result.events[0].kind, "gnss_jump");
+  EXPECT_NEAR(*result.events[0].time - test::mission_start(), 10.0, 0.5);
   double refused_for = 0.0;
   for (const InnovationRecord& innovation : result.innovations)
     if (!innovation.used) refused_for = std::max(refused_for, innovation.t - test::mission_start() - 10.0);
   EXPECT_LT(refused_for, options_.gate_patience_s + 0.3);
   EXPECT_NEAR((result.last.nav.r_eb_e - recording_.truth(result.last.nav.t).r_eb_e).norm(), 4.0, 0.1);
+}
+
+TEST_F(ForwardFilterTest, SaysByHowMuchHeightsHaveJumped) {
+  record();
+  for (record::GnssFix& fix : recording_.gnss.fixes)
+    if (fix.t - test::mission_start() > 10.0) {
+      const Eigen::Matrix3d C_n_e = geo::C_n_e(geo::geodetic_from_ecef(fix.r_ea_e));
+      fix.r_ea_e += C_n_e * Eigen::Vector3d(0.0, 0.0, -30.0);
+    }
+  const FilterResult result = run({});
+  ASSERT_EQ(result.events.size(), 1u);
+  const std::string& text = result.events[0].text;
+  const auto up = text.find(" up)");
+  ASSERT_NE(up, std::string::npos) << text;
+  EXPECT_NEAR(std::stod(text.substr(text.rfind(' ', up - 1))), 30.0, 0.3) << text;  // a centimetre of noise, 3 s of coasting
+  EXPECT_NE(text.find("either side"), std::string::npos) << text;
 }
 
 TEST_F(ForwardFilterTest, BridgesAGapOfTheImuAndSaysThatItIsUncertain) {

@@ -39,6 +39,7 @@ std::vector<record::TrajectoryEpoch> random_epochs(int n) {
     e.nav.v_eb_e = 20.0 * vector();
     e.nav.q_b_e = Eigen::Quaterniond(normal(generator), normal(generator), normal(generator), normal(generator)).normalized();
     e.cov = {covariance(0.1), covariance(0.01), covariance(1e-3)};
+    e.motion = {0.1 * vector(), vector()};
     epochs.push_back(e);
   }
   return epochs;
@@ -137,6 +138,13 @@ TEST(Sbet, ReadsBackExactlyWithItsUncertainty) {
   const std::string smrmsg = files.get("a.smrmsg");
   ASSERT_EQ(sbet.size(), 40U * 136U);
   ASSERT_EQ(smrmsg.size(), 40U * 80U);
+  // Wander angle; acceleration and angular rate about forward, right, down: bytes 80 to 136 of a record.
+  std::array<double, 7> motion{};
+  std::memcpy(motion.data(), sbet.data() + 7 * 136 + 80, 56);
+  const record::BodyMotion& body = epochs[7].motion;
+  const std::array<double, 7> expected = {
+      0.0, body.a_eb_b.x(), body.a_eb_b.y(), body.a_eb_b.z(), body.omega_eb_b.x(), body.omega_eb_b.y(), body.omega_eb_b.z()};
+  EXPECT_EQ(motion, expected);
   std::array<double, 10> record{};
   std::memcpy(record.data(), smrmsg.data() + 7 * 80, 80);
   EXPECT_EQ(record[0], epochs[7].nav.t.sow());

@@ -2,7 +2,9 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
+#include <iterator>
 #include <limits>
 
 #include "../../src/io/text_buffer.hpp"
@@ -115,23 +117,94 @@ TEST(AtomicFile, FullDiskIsSeen) {
             std::string::npos);
 }
 
-TEST(Kml, ThinsTheLineAndKeepsItsEnds) {
+long occurrences(const std::string& text, std::string_view word) {
+  long count = 0;
+  for (auto at = text.find(word); at != std::string::npos; at = text.find(word, at + word.size())) ++count;
+  return count;
+}
+
+TEST(Kml, ThinsTheTrackAndKeepsItsEnds) {
   const Files files;
-  const auto kml = make_kml_writer(files.path("a.kml"), "drive <1> & back", 1.0);
+  const auto kml = make_kml_writer(files.path("a.kml"), "drive <1> & back", {}, 1.0);
   for (int i = 0; i <= 100; ++i) {
     record::TrajectoryEpoch epoch;
+    epoch.nav.t = geo::GpsTime::from_week(2374, 243258.499 + 0.01 * i);
     epoch.nav.r_eb_e = geo::ecef_from_geodetic({0.0, 1e-8 * i, 5.0});  // steps of 6.4 cm
     kml->write(epoch);
   }
   kml->close();
   const std::string text = files.get("a.kml");
   EXPECT_NE(text.find("<name>drive &lt;1&gt; &amp; back</name>"), std::string::npos);
-  const auto points = std::count(text.begin(), text.end(), ',') / 2;
+  const long points = occurrences(text, "<gx:coord>");
   EXPECT_GE(points, 6);  // 6.38 m in steps of at least 1 m, with both ends
   EXPECT_LE(points, 8);
-  EXPECT_NE(text.find("\n0.00000000,0.00000000,5.000\n"), std::string::npos);
-  EXPECT_NE(text.find("\n0.00005730,0.00000000,5.000\n"), std::string::npos);  // 1e-6 rad
+  EXPECT_EQ(occurrences(text, "<when>"), points);
+  EXPECT_NE(text.find("<gx:coord>0.00000000 0.00000000 5.000</gx:coord>"), std::string::npos);
+  EXPECT_NE(text.find("<gx:coord>0.00005730 0.00000000 5.000</gx:coord>"), std::string::npos);  // 1e-6 rad
+  EXPECT_NE(text.find("<when>2025-07-08T19:34:00.499Z</when>"), std::string::npos) << text;     // 18 s before GPS time
   EXPECT_EQ(text.substr(text.size() - 7), "</kml>\n");
+}
+
+TEST(Kml, HeightsAreAboveTheGeoidOrNotUsed) {
+  const Files files;
+  for (const bool known : {true, false}) {
+    const auto kml = make_kml_writer(files.path("a.kml"), "a", known ? std::optional<double>(48.25) : std::nullopt);
+    record::TrajectoryEpoch epoch;
+    epoch.nav.r_eb_e = geo::ecef_from_geodetic({0.7, 0.1, 500.0});
+    kml->write(epoch);
+    kml->close();
+    const std::string text = files.get("a.kml");
+    EXPECT_NE(text.find(known ? " 451.750</gx:coord>" : " 500.000</gx:coord>"), std::string::npos) << text;
+    EXPECT_NE(text.find(known ? "<altitudeMode>absolute<" : "<altitudeMode>clampToGround<"), std::string::npos) << text;
+    EXPECT_NE(text.find(known ? "above mean sea level" : "above the WGS 84 ellipsoid"), std::string::npos) << text;
+  }
+}
+
+/// Fixed for two seconds, without GNSS for two, float from then on.
+std::vector<record::TrajectoryEpoch> of_changing_quality() {
+  std::vector<record::TrajectoryEpoch> epochs;
+  for (int i = 0; i < 6; ++i) {
+    record::TrajectoryEpoch epoch;
+    epoch.nav.t = geo::GpsTime::from_week(2374, 100.0 + i);
+    epoch.nav.r_eb_e = geo::ecef_from_geodetic({0.7, 0.1 + 1e-6 * i, 500.0});
+    epoch.cov = {1e-4 * Eigen::Matrix3d::Identity(), 1e-4 * Eigen::Matrix3d::Identity(), 1e-6 * Eigen::Matrix3d::Identity()};
+    if (i < 2) epoch.gnss = record::GnssSupport{record::FixQuality::kFixed, 14, 1.5, 12.0};
+    if (i > 3) epoch.gnss = record::GnssSupport{record::FixQuality::kFloat, {}, {}, {}};
+    epochs.push_back(epoch);
+  }
+  return epochs;
+}
+
+TEST(Kml, EachStretchOfAQualityIsATrackInItsColourAndNoneIsApartFromTheNext) {
+  const Files files;
+  const auto kml = make_kml_writer(files.path("a.kml"), "a", {});
+  for (const auto& epoch : of_changing_quality()) kml->write(epoch);
+  kml->close();
+  const std::string text = files.get("a.kml");
+  EXPECT_EQ(occurrences(text, "<Placemark>"), 3);
+  const auto fixed = text.find("<styleUrl>#fixed<"), without = text.find("<styleUrl>#without-gnss<"),
+             floating = text.find("<styleUrl>#float<");
+  EXPECT_TRUE(fixed < without && without < floating && floating != std::string::npos) << text;
+  EXPECT_EQ(occurrences(text, "<gx:coord>"), 6 + 2);  // where one ends the next begins
+}
+
+TEST(Pos, SaysWhatIsKnownOfGnssAndWhereThereWasNone) {
+  const Files files;
+  const auto pos = make_pos_writer(files.path("a.pos"));
+  for (const auto& epoch : of_changing_quality()) pos->write(epoch);
+  pos->close();
+  std::istringstream lines(files.get("a.pos"));
+  std::string line;
+  std::getline(lines, line);
+  std::vector<std::array<double, 4>> seen;  // Q, ns, age, ratio
+  while (std::getline(lines, line)) {
+    std::istringstream words(line);
+    std::vector<std::string> columns{std::istream_iterator<std::string>(words), {}};
+    ASSERT_EQ(columns.size(), 24U);
+    seen.push_back({std::stod(columns[5]), std::stod(columns[6]), std::stod(columns[13]), std::stod(columns[14])});
+  }
+  const std::array<double, 4> fixed{1, 14, 1.5, 12}, none{7, 0, 0, 0}, floating{2, 0, 0, 0};
+  EXPECT_EQ(seen, (std::vector<std::array<double, 4>>{fixed, fixed, none, none, floating, floating}));
 }
 
 TEST(Writers, EveryFormatByName) {

@@ -60,5 +60,19 @@ TEST(Interpolation, MovesToAnotherPointOfATurningBody) {
   EXPECT_LE((mean_rate(cubic(0.0), cubic(0.5)) - omega).norm(), 1e-12);
 }
 
+TEST(PassingMotion, IsThatOfTheIntervalThatEndsAndHoldsOverAnUpdate) {
+  PassingMotion motion;
+  EXPECT_TRUE(motion.at(cubic(0.0)).a_eb_b.isZero(0.0));
+  const record::BodyMotion over = motion.at(cubic(0.01));
+  // 2 b + 6 c s of the cubic in the middle of the interval, turned to the body there.
+  const Eigen::Vector3d a_e = Eigen::Vector3d(6.0, 0.2, -2.0) + 6.0 * 0.005 * Eigen::Vector3d(-0.2, 0.7, 0.3);
+  EXPECT_LE((over.a_eb_b - cubic(0.005).q_b_e.conjugate() * a_e).norm(), 1e-9);  // a mean of what is linear
+  EXPECT_LE((over.omega_eb_b - Eigen::Vector3d(0.1, -0.3, 0.2)).norm(), 1e-9);
+  record::NavState corrected = cubic(0.02);
+  corrected.r_eb_e.x() += 0.5;
+  corrected.v_eb_e.x() += 2.0;
+  EXPECT_TRUE(motion.at(corrected).a_eb_b == over.a_eb_b);
+}
+
 }  // namespace
 }  // namespace coast::study

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <memory>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -64,20 +65,26 @@ class TrajectoryWriter {
 /// CSV with header: gps_week, sow_s, position, velocity, attitude; standard deviations (N, E, D; roll, pitch, yaw) and
 /// correlations of position, velocity and attitude errors.
 [[nodiscard]] std::unique_ptr<TrajectoryWriter> make_csv_writer(const std::filesystem::path& path);
-/// SBET (136-byte records of doubles, rad, little endian). Specific force and angular rate are zero, wander angle zero: the
-/// attitude's yaw is the true heading. With `smrmsg` the file of standard deviations beside it (80-byte records).
+/// SBET (136-byte records of doubles, rad, little endian). Acceleration (without gravity) and angular rate, both against the
+/// Earth and in body axes, are those of `motion`; the wander angle is zero: the attitude's yaw is the true heading. With
+/// `smrmsg` the file of standard deviations beside it (80-byte records).
 [[nodiscard]] std::unique_ptr<TrajectoryWriter> make_sbet_writer(const std::filesystem::path& sbet,
                                                                  const std::filesystem::path& smrmsg);
-/// RTKLIB `.pos` (GPST calendar, degrees, ellipsoidal), positions and velocities with signed-root covariances, Q = 1.
+/// RTKLIB `.pos` (GPST calendar, degrees, ellipsoidal), positions and velocities with signed-root covariances. Q, ns, age and
+/// ratio are those of `gnss`; where there was none, Q = 7 (dead reckoning) and ns = 0.
 [[nodiscard]] std::unique_ptr<TrajectoryWriter> make_pos_writer(const std::filesystem::path& path);
-/// KML line with altitudes, thinned to steps of at least `min_step_m`.
+/// KML tracks with UTC times, a track for each stretch of one GNSS quality, in its colour; thinned to steps of at least
+/// `min_step_m`. Altitudes are above mean sea level, as viewers take them; where the geoid is not known they are above the
+/// ellipsoid, the tracks are clamped to the ground, and the description says so.
+/// @param geoid_height_m  of the geoid above what the trajectory's heights count from, m
 [[nodiscard]] std::unique_ptr<TrajectoryWriter> make_kml_writer(const std::filesystem::path& path, std::string_view name,
-                                                                double min_step_m = 1.0);
+                                                                std::optional<double> geoid_height_m, double min_step_m = 1.0);
 
 /// One of `output.formats`: nav | csv | sbet | pos | kml; the extension is added to `stem`.
 /// @throws std::invalid_argument  another name
 [[nodiscard]] std::unique_ptr<TrajectoryWriter> make_trajectory_writer(std::string_view format,
-                                                                       const std::filesystem::path& stem);
+                                                                       const std::filesystem::path& stem,
+                                                                       std::optional<double> geoid_height_m = {});
 /// The names that make_trajectory_writer knows.
 [[nodiscard]] const std::vector<std::string_view>& trajectory_formats();
 

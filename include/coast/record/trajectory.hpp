@@ -3,11 +3,13 @@
 #include <Eigen/Core>
 #include <Eigen/Geometry>
 #include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "coast/geo/time.hpp"
 #include "coast/record/event.hpp"
+#include "coast/record/gnss.hpp"
 
 namespace coast::record {
 
@@ -26,10 +28,26 @@ struct NavCovariance {
   Eigen::Matrix3d attitude = Eigen::Matrix3d::Zero();
 };
 
+/// What the body does against the Earth, in body axes: a mean over the interval that ends at the epoch.
+struct BodyMotion {
+  Eigen::Vector3d omega_eb_b = Eigen::Vector3d::Zero();  ///< rad/s
+  Eigen::Vector3d a_eb_b = Eigen::Vector3d::Zero();      ///< acceleration, without gravity, m/s^2
+};
+
+/// What the fix says of itself that a position rests on.
+struct GnssSupport {
+  FixQuality quality = FixQuality::kUnknown;
+  std::optional<int> satellites;
+  std::optional<double> age_s;
+  std::optional<double> ratio;
+};
+
 /// One epoch of a computed trajectory. Trajectories at IMU rate are streamed, epoch by epoch, into sinks.
 struct TrajectoryEpoch {
   NavState nav;
   NavCovariance cov;
+  BodyMotion motion = {};                ///< filled in for writers
+  std::optional<GnssSupport> gnss = {};  ///< likewise; absent: there was no GNSS
 };
 using EpochSink = std::function<void(const TrajectoryEpoch&)>;
 

@@ -74,7 +74,7 @@ class Comparison {
   Eigen::Vector3d lever_arm_b_;
   Sink sink_;
   std::optional<record::TrajectoryEpoch> previous_;
-  PassingRate rate_;
+  PassingMotion motion_;
   std::size_t next_ = 0;  ///< first reference epoch not yet compared
   ErrorStatistics statistics_;
 };

@@ -23,19 +23,22 @@ namespace coast::study {
 /// Mean rate against the Earth between two epochs, body axes, rad/s.
 [[nodiscard]] Eigen::Vector3d mean_rate(const record::NavState& a, const record::NavState& b);
 
+/// Mean acceleration against the Earth between two epochs, axes of the body half-way, m/s^2.
+[[nodiscard]] Eigen::Vector3d mean_acceleration(const record::NavState& a, const record::NavState& b);
+
 /// Whether the positions differ from what the velocities say by more than a jerk of 50 m/s^3 explains: an update of a filter
 /// lies between the two epochs, and differences over it are no motion.
 [[nodiscard]] bool corrected_between(const record::NavState& a, const record::NavState& b);
 
-/// Rate of a trajectory that goes by epoch by epoch; over an update of the filter the rate of the interval before it.
-class PassingRate {
+/// Motion of a trajectory that goes by epoch by epoch; over an update of the filter that of the interval before it.
+class PassingMotion {
  public:
-  /// @return rad/s, body axes, against the Earth; zero at the first epoch
-  const Eigen::Vector3d& at(const record::NavState& nav);
+  /// @return over the interval that ends there; zero at the first epoch
+  const record::BodyMotion& at(const record::NavState& nav);
 
  private:
   std::optional<record::NavState> previous_;
-  Eigen::Vector3d rate_ = Eigen::Vector3d::Zero();
+  record::BodyMotion motion_;
   bool held_ = false;
 };
 

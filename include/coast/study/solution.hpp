@@ -25,6 +25,8 @@ struct SolutionOutputs {
   record::EpochSink forward;
   record::EpochSink smoothed;
   std::function<void(const estimate::FilterState&)> at_knots;
+  /// Every measurement of the forward pass, and whether it was used; none of carrier phases.
+  std::function<void(const estimate::Measurement&, bool)> measurements;
   estimate::KnotSampling states;  ///< smoothed knots that keep their sensor states
 };
 /// The backward filter's half of a combined solution: a forward pass says where knots are and how it ends, then the backward
