@@ -15,6 +15,8 @@ record::GnssRecording ten_fixes() {
   for (int i = 0; i < 10; ++i) {
     record::GnssFix fix;
     fix.t = kBegin + i;
+    fix.r_ea_e.setZero();
+    fix.position_cov_n.setIdentity();
     fix.quality = i < 5 ? record::FixQuality::kFixed : record::FixQuality::kFloat;
     fix.satellites = i;
     gnss.fixes.push_back(fix);
