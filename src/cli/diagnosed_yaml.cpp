@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <sstream>
 
 #include "diagnosis_json.hpp"
@@ -39,7 +40,19 @@ std::string entry(const diagnose::Finding& f) {
   return text + fmt::format("value: {:.17g}}}  # +- {:.2g} {}\n", f.value, f.sd, effect.unit);
 }
 
+bool stated_by_key(const diagnose::Finding& f) {
+  return f.hypothesis.effect->key && !f.from && !f.to;
+}
+
 }  // namespace
+
+std::vector<diagnose::RunKey> keys_found(const diagnose::Diagnosis& d) {
+  std::vector<diagnose::RunKey> keys;
+  for (const diagnose::Finding& f : d.findings)
+    if (stated_by_key(f) && std::ranges::find(keys, f.hypothesis.effect->key->name, &diagnose::RunKey::name) == keys.end())
+      keys.push_back(*f.hypothesis.effect->key);
+  return keys;
+}
 
 bool changes_error_model(const diagnose::Diagnosis& d) {
   for (const diagnose::NoiseFinding& f : d.noise)
@@ -53,7 +66,9 @@ std::string diagnosed_yaml(const std::string& resolved, const diagnose::Diagnosi
   if (changes_error_model(d)) text = with_value(with_value(text, "imu", "error_model", error_model), "imu", "noise", "stated");
   bool of_gnss = false;
   std::string entries;
-  for (const diagnose::Finding& f : d.findings) entries += entry(f);
+  for (const diagnose::RunKey& key : keys_found(d)) text = with_value(text, key.section, key.name, key.text(d.modelled.setup));
+  for (const diagnose::Finding& f : d.findings)
+    if (!stated_by_key(f)) entries += entry(f);
   for (const diagnose::NoiseFinding& f : d.noise) {
     of_gnss = of_gnss || f.sensor == "gnss";
     if (f.place == diagnose::NoiseFinding::Place::kEffects)

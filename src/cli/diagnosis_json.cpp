@@ -237,6 +237,8 @@ std::string diagnosis_text(const diagnose::Diagnosis& d, const std::optional<Sim
                         f.from ? fmt::format(" from {:.1f} s", f.from->sow()) : std::string(), explanation(f),
                         in_simulation(f, simulation));
   for (const diagnose::NoiseFinding& f : d.noise) text += fmt::format("{}: {}\n", full_name(f), explanation(f));
+  for (const diagnose::RunKey& key : keys_found(d))
+    text += fmt::format("The run file states it: `{}: {{{}: {}}}`.\n", key.section, key.name, key.text(d.modelled.setup));
   if (const std::string why = why_not_accepted(d); !why.empty()) text += fmt::format("Not accepted. {}\n", why);
   if (simulation)
     for (const diagnose::Finding& f : simulation->diagnosis.findings)

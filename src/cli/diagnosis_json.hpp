@@ -4,6 +4,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "coast/diagnose/diagnosis.hpp"
 #include "coast/report/page.hpp"
@@ -24,10 +25,12 @@ struct SimulationCheck {
                                          const std::optional<SimulationCheck>& simulation);
 [[nodiscard]] std::string diagnosis_text(const diagnose::Diagnosis& diagnosis,
                                          const std::optional<SimulationCheck>& simulation);
-/// The run's own configuration with what was found: `effects`, the GNSS noise, and the error model of that name where it has
-/// changed. @param resolved  run.resolved.yaml
+/// The run's own configuration with what was found: by its key what has one, `effects` of the rest, the GNSS noise, and the
+/// error model of that name where it has changed. @param resolved  run.resolved.yaml
 [[nodiscard]] std::string diagnosed_yaml(const std::string& resolved, const diagnose::Diagnosis& diagnosis,
                                          const std::string& error_model);
+/// The keys of the run file that state findings: lever arm, time offset.
+[[nodiscard]] std::vector<diagnose::RunKey> keys_found(const diagnose::Diagnosis& diagnosis);
 /// Why all that was found is no better than nothing: the recording is no likelier with it, or outages drift farther. Empty
 /// where it is better, and where nothing was found.
 [[nodiscard]] std::string why_not_accepted(const diagnose::Diagnosis& diagnosis);

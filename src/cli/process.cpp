@@ -235,6 +235,7 @@ void ProcessRun::solve_and_write() {
   forward_output.close();
   output.close();
   result_.innovations = std::move(solution_.forward.innovations);
+  result_.jumps = solution_.forward.jumps;
   result_.events.insert(result_.events.end(), solution_.forward.events.begin(), solution_.forward.events.end());
   result_.batch = std::move(solution_.batch);
   count_innovations();

@@ -98,6 +98,7 @@ struct ProcessResult {
   std::vector<StateTrack> states;
   std::optional<estimate::BatchReport> batch;
   Judgement verdict;
+  std::vector<estimate::GnssJump> jumps;
   record::Events events;
 };
 

@@ -30,7 +30,7 @@ Standing Judgement::standing() const {
 }
 
 namespace {
-constexpr const char* kJumps = "gnss_jumps";
+constexpr const char* kJumps = "gnss_jump_m";
 }  // namespace
 
 bool Judgement::only_jumps() const {
@@ -189,15 +189,25 @@ const record::Event* find(const record::Events& events, std::string_view kind) {
   return found == events.end() ? nullptr : &*found;
 }
 
+// A smaller jump is told as an event: some seconds of float positions, from which the solution comes back.
+Check jump_check(const ProcessResult& result) {
+  constexpr double kLargest = 0.5;  // m
+  const auto size = [](const estimate::GnssJump& jump) { return jump.by_n.norm(); };
+  const auto largest = std::ranges::max_element(result.jumps, {}, size);
+  if (largest == result.jumps.end()) return {kJumps, 0.0, kLargest};
+  const auto told = std::ranges::find_if(
+      result.events, [&](const record::Event& event) { return event.kind == "gnss_jump" && event.time == largest->t; });
+  std::string text = told == result.events.end() ? "" : told->text;
+  if (result.jumps.size() > 1) text += fmt::format(" (the largest of {} jumps)", result.jumps.size());
+  return {kJumps, size(*largest), kLargest, {}, std::move(text)};
+}
+
 // Where outages are studied it is they behind which the drift was larger than predicted.
 void add_jumps(const ProcessResult& result, std::vector<Check>& checks) {
   const auto count = [&](const char* kind) {
     return static_cast<double>(std::ranges::count(result.events, kind, &record::Event::kind));
   };
-  const record::Event* jump = find(result.events, "gnss_jump");
-  const double jumps = count("gnss_jump");
-  const std::string others = jumps > 1.0 ? fmt::format(" (the first of {:.0f} jumps)", jumps) : "";
-  checks.push_back({kJumps, jumps, 0.0, {}, jump == nullptr ? "" : jump->text + others});
+  checks.push_back(jump_check(result));
   if (!result.outages.empty()) return;
   const record::Event* drift = find(result.events, "gate_opened");
   checks.push_back({"drift_behind_outages", count("gate_opened"), 0.0, {}, drift == nullptr ? "" : drift->text});

@@ -325,19 +325,21 @@ bool ForwardPass::refuse(const Eigen::Vector3d& nu_e) {
 void ForwardPass::note_opened(const Eigen::Vector3d& nu_n) {
   const std::string by =
       fmt::format("{:.2f} m ({:+.2f} north, {:+.2f} east, {:+.2f} up)", nu_n.norm(), nu_n.x(), nu_n.y(), -nu_n.z());
-  if (coasting())
+  if (coasting()) {
     result_.events.push_back({record::Event::Severity::kWarning, "gate_opened",
                               fmt::format("GNSS positions behind an outage differ by {} from the filter's, which drifted more "
                                           "than it thought; after {:.1f} s they are taken",
                                           by, state_.nav.t - first_refused_),
                               state_.nav.t, 1});
-  else
+  } else {
+    result_.jumps.push_back({first_refused_, nu_n});
     result_.events.push_back(
         {record::Event::Severity::kWarning, "gnss_jump",
          fmt::format("GNSS positions jumped by {} at {:.1f} s of week and stayed there. They were refused "
                      "for {:.1f} s and are followed from there on; either side of the jump may be the wrong one",
                      by, first_refused_.sow(), state_.nav.t - first_refused_),
          first_refused_, 1});
+  }
 }
 
 // Behind an outage the filter is not confident: its drift was larger than it thought, and everything that drifted along has to

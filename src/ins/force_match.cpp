@@ -22,7 +22,8 @@ constexpr double kSideslip = 4.0 * geo::kDegree;  // course against body axis: m
 constexpr double kSlowest = 0.3, kCourseSigmas = 5.0;  // m/s
 constexpr double kOverlap = 1.5;                       // neighbouring hats share a quarter of their noise
 constexpr double kRateSpan = 0.02;                     // s to both sides, for the antenna's velocity against the IMU
-constexpr int kGaussNewtonSteps = 30;
+constexpr int kGaussNewtonSteps = 60;
+constexpr double kLinear = 0.1;  // rad that a bias turns the attitude by over a window: its effect is linear up to there
 
 using Matrix9 = Eigen::Matrix<double, 9, 9>;  // psi_e, gyro bias, accelerometer bias
 using Vector9 = Eigen::Matrix<double, 9, 1>;
@@ -208,11 +209,23 @@ Normal linearise(const MatchInput& input, const std::vector<ForceObservation>& o
   return normal;
 }
 
-// Gauss-Newton, with a bound on the step: a heading far off must turn, not tumble.
+// What is predicted for a bias nearby.
+std::vector<Prediction> moved(std::vector<Prediction> predictions, const Eigen::Vector3d& by) {
+  for (Prediction& one : predictions) one.force += one.by_gyro_bias * by;
+  return predictions;
+}
+
+// Gauss-Newton, with a bound on the step: a heading far off must turn, not tumble. The samples are gone through anew where the
+// bias has moved too far for its linear effect, and where the iteration rests, until it rests on a bias that they were gone
+// through with.
 Estimate refine(const MatchInput& input, const Window& window, Estimate x) {
+  constexpr double kRests = 1e-6;  // rad
+  const double seconds = window.observations().back().t_b;
+  Eigen::Vector3d predicted_at = x.gyro_bias;
+  std::vector<Prediction> predictions = window.predict(x.gyro_bias);
   for (int iteration = 0; iteration < kGaussNewtonSteps; ++iteration) {
-    const std::vector<Prediction> predictions = window.predict(x.gyro_bias);
-    const Normal normal = linearise(input, window.observations(), predictions, x);
+    const Eigen::Vector3d off = x.gyro_bias - predicted_at;
+    const Normal normal = linearise(input, window.observations(), moved(predictions, off), x);
     const Eigen::LDLT<Matrix9> solver(normal.N);
     Vector9 dx = solver.solve(normal.b);
     x.covariance = solver.solve(Matrix9::Identity());
@@ -222,7 +235,11 @@ Estimate refine(const MatchInput& input, const Window& window, Estimate x) {
     x.C = geo::rotation_matrix(dx.head<3>()) * x.C;
     x.gyro_bias += dx.segment<3>(3);
     x.accel_bias += dx.tail<3>();
-    if (angle < 1e-6) break;
+    const double turned = seconds * (x.gyro_bias - predicted_at).norm();
+    if (angle < kRests && turned < kRests) break;
+    if (angle >= kRests && turned < kLinear) continue;
+    predicted_at = x.gyro_bias;
+    predictions = window.predict(x.gyro_bias);
   }
   return x;
 }

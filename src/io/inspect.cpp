@@ -196,17 +196,20 @@ void check_axes(const Eigen::Vector3d& f_rest, const std::optional<TravelDirecti
 }
 
 /// Whole-second differences between time scales that people mix up, and their names.
-const char* scale_of(double shift) {
+/// @param step  between fixes, s: turns are matched within one
+const char* scale_of(double shift, double step) {
   const double s = std::abs(shift);
   const double whole = std::round(s);
   if (std::abs(s - whole) > 0.3) return nullptr;
   if (whole >= 13.0 && whole <= 18.0) return "GPS minus UTC (leap seconds; 18 s since 2017, fewer before)";
-  if (whole == 19.0) return "TAI minus GPS";
+  if (whole == 19.0)
+    return step < 0.6 ? "TAI minus GPS"
+                      : "GPS minus UTC (leap seconds, 18 s), or TAI minus GPS (19 s): fixes this far apart do not tell which";
   if (whole >= 32.0 && whole <= 37.0) return "TAI minus UTC";
   return nullptr;
 }
 
-void check_time(const TimeMatch& match, Inspection& result) {
+void check_time(const TimeMatch& match, double step, Inspection& result) {
   result.time_correlation = match.correlation;
   const double strength = std::abs(match.correlation);
   if (strength < kTimeCorrelation) {
@@ -223,7 +226,7 @@ void check_time(const TimeMatch& match, Inspection& result) {
     result.sentences.push_back(
         fmt::format("Times: turns of GNSS and IMU match within 0.15 s (best at {:+.2f} s, correlation {:.3f}).", match.shift,
                     match.correlation));
-  } else if (const char* scale = scale_of(match.shift)) {
+  } else if (const char* scale = scale_of(match.shift, step)) {
     warn(result, "leap_second_shift",
          fmt::format(
              "GNSS times are {:+.2f} s from those of the IMU (correlation {:.3f} there, {:.2f} unshifted): that is {}. One of "
@@ -300,7 +303,7 @@ Inspection inspect(const record::ImuRecording& body, const record::GnssRecording
     result.travel_yaw = travel->yaw;
   check_axes(rest->force, travel, result);
   if (match)
-    check_time(*match, result);
+    check_time(*match, (gnss.fixes.back().t - gnss.fixes.front().t) / static_cast<double>(gnss.fixes.size()), result);
   else
     result.sentences.emplace_back("Times: not enough turning at speed to compare the clocks of GNSS and IMU.");
   return result;

@@ -13,6 +13,7 @@ namespace {
 
 constexpr double kWideTime = 0.5;  // s: a fifth of a second is what turns leave open
 constexpr double kWideArm = 1.0;   // m: with its signs turned, a car's arm is two of these off
+constexpr double kFixes = 300.0;   // at least: fewer turns between fixes far apart show neither
 
 }  // namespace
 
@@ -55,7 +56,8 @@ AntennaFit PreparedMission::fit_antenna(AntennaChoice estimated) {
     options.auxiliary.lever_arm_sd_m = estimated.lever_arm ? kWideArm : 0.0;
     if (!estimated.lever_arm) mission_->lever_arm_b = setup_.lever_arm_b;
   }
-  const estimate::FilterResult run = first_minutes(options);
+  const double seconds = std::max(kFirstMinutes, kFixes * fix_interval_s());
+  const estimate::FilterResult run = first_seconds(seconds, options);
   const estimate::StateLayout layout = estimate::ForwardFilter(*mission_, setup_.model, options).layout();
   AntennaFit fit{.log_likelihood = run.log_likelihood, .excess = std::max(1.0, nis_over_expected(run.innovations))};
   if (estimated.time_offset) {

@@ -4,13 +4,11 @@
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <functional>
 #include <limits>
 #include <optional>
 
-#include "coast/geo/units.hpp"
+#include "cause_hypotheses.hpp"
 #include "coast/record/error.hpp"
 
 namespace coast::study {
@@ -19,88 +17,21 @@ namespace {
 
 constexpr double kSeconds = 120.0;
 constexpr double kBeforeMotion = 20.0;
-constexpr double kMoved = 10.0;                // m
-constexpr double kTimeSd = 0.5, kArmSd = 1.0;  // s, m: left to the data
+constexpr double kMoved = 10.0;  // m
 
 // Each hypothesis costs several passes: what turns and accelerates a vehicle is seen at these rates too.
 constexpr double kImuInterval = 0.02;  // s: as many increments are added up as it holds
 constexpr double kFixInterval = 0.45;  // s, at least
-
-/// What a hypothesis changes, and how it is told.
-struct Hypothesis {
-  std::string what;
-  std::string remedy;
-  std::function<void(Excerpt&, Setup&)> apply;
-};
+constexpr int kStartRounds = 2;
 
 struct Fit {
   double log_likelihood = -std::numeric_limits<double>::infinity();  // concentrated
   double factor = 1.0;                                               // on the sigmas, where it is largest
   std::optional<double> time_offset_s, time_offset_sd_s;
   std::optional<Eigen::Vector3d> lever_arm_m, lever_arm_sd_m;
+  std::optional<ins::InitialState> start;  // that was found
+  Eigen::VectorXd start_sensor_errors;
 };
-
-void change_gyro(Excerpt& excerpt, const Eigen::Matrix3d& M) {
-  for (record::ImuSample& s : excerpt.imu.samples) s.dtheta = M * s.dtheta;
-}
-
-void change_accel(Excerpt& excerpt, double factor) {
-  for (record::ImuSample& s : excerpt.imu.samples) s.dv *= factor;
-}
-
-void add_signs_and_axes(std::vector<Hypothesis>& all) {
-  static constexpr std::array<const char*, 3> kAxis{"x", "y", "z"};
-  for (Eigen::Index i = 0; i < 3; ++i) {
-    Eigen::Matrix3d turned = Eigen::Matrix3d::Identity();
-    turned(i, i) = -1.0;
-    const char* axis = kAxis[static_cast<std::size_t>(i)];
-    all.push_back({fmt::format("the sign of the gyro about body {} is turned", axis),
-                   "turn that column in the file, or correct `columns` and `axes`",
-                   [turned](Excerpt& excerpt, Setup&) { change_gyro(excerpt, turned); }});
-    const Eigen::Index j = (i + 1) % 3;
-    Eigen::Matrix3d exchanged = Eigen::Matrix3d::Identity();
-    exchanged.row(i).swap(exchanged.row(j));
-    all.push_back({fmt::format("the gyros about body {} and {} are exchanged", axis, kAxis[static_cast<std::size_t>(j)]),
-                   "exchange them in `columns: {gyro: [..]}`",
-                   [exchanged](Excerpt& excerpt, Setup&) { change_gyro(excerpt, exchanged); }});
-    Eigen::Matrix3d others = -turned;
-    all.push_back({fmt::format("the gyro's axes are turned by 180 deg about body {} against the accelerometer's", axis),
-                   "correct `columns` and `axes`, which both share",
-                   [others](Excerpt& excerpt, Setup&) { change_gyro(excerpt, others); }});
-  }
-  all.push_back({"all signs of the gyro are turned", "`scale: {gyro: -1}`",
-                 [](Excerpt& excerpt, Setup&) { change_gyro(excerpt, -Eigen::Matrix3d::Identity()); }});
-}
-
-void add_units(std::vector<Hypothesis>& all) {
-  const auto gyro = [&all](const char* what, const char* remedy, double factor) {
-    all.push_back({what, remedy, [factor](Excerpt& e, Setup&) { change_gyro(e, factor * Eigen::Matrix3d::Identity()); }});
-  };
-  gyro("the gyro is in deg/s", "`units: {gyro: deg/s}`", geo::kDegree);
-  gyro("the gyro is in rad/s", "`units: {gyro: rad/s}`", 1.0 / geo::kDegree);
-  all.push_back(
-      {"the accelerometer is in g", "`units: {accel: g}`", [](Excerpt& e, Setup&) { change_accel(e, geo::kStandardGravity); }});
-  all.push_back({"the accelerometer is in m/s^2", "`units: {accel: m/s^2}`",
-                 [](Excerpt& e, Setup&) { change_accel(e, 1.0 / geo::kStandardGravity); }});
-}
-
-void add_antenna(std::vector<Hypothesis>& all) {
-  all.push_back({"the lever arm is", "", [](Excerpt&, Setup& setup) { setup.filter.auxiliary.lever_arm_sd_m = kArmSd; }});
-  all.push_back({"the time offset is", "", [](Excerpt&, Setup& setup) { setup.filter.auxiliary.time_offset_sd_s = kTimeSd; }});
-  for (const double shift : {-18.0, 18.0})
-    all.push_back({"the time offset is", "", [shift](Excerpt&, Setup& setup) {
-                     setup.time_offset_s += shift;
-                     setup.filter.auxiliary.time_offset_sd_s = kTimeSd;
-                   }});
-}
-
-std::vector<Hypothesis> catalogue() {
-  std::vector<Hypothesis> all;
-  add_signs_and_axes(all);
-  add_units(all);
-  add_antenna(all);
-  return all;
-}
 
 void note_antenna(const estimate::FilterState& last, const estimate::StateLayout& layout, const estimate::Mission& mission,
                   Fit& fit) {
@@ -124,29 +55,38 @@ Setup as_described(const Setup& stated) {
   setup.refine_before.reset();
   setup.fit_before.reset();
   setup.filter.gate_probability = 0.0;
+  setup.start_rounds = kStartRounds;
   return setup;
 }
 
 // Where the start is found by them too, each fit takes ten passes more: that is left to the hypotheses that are about them.
 estimate::FilterOptions antenna_left_to_data(estimate::FilterOptions options, const Setup& stated) {
   estimate::AuxiliaryStates& auxiliary = options.auxiliary;
-  if (stated.unstated.time_offset && auxiliary.time_offset_sd_s == 0.0) auxiliary.time_offset_sd_s = kTimeSd;
-  if (stated.unstated.lever_arm && auxiliary.lever_arm_sd_m == 0.0) auxiliary.lever_arm_sd_m = kArmSd;
+  if (stated.unstated.time_offset && auxiliary.time_offset_sd_s == 0.0) auxiliary.time_offset_sd_s = kFreeTimeSd;
+  if (stated.unstated.lever_arm && auxiliary.lever_arm_sd_m == 0.0) auxiliary.lever_arm_sd_m = kFreeArmSd;
   return options;
 }
 
-/// Under a hypothesis (none: as described) and with the white noise of the IMU times `noise`.
-Fit fit(const Excerpt& excerpt, const Setup& stated, const Hypothesis* hypothesis, double noise) {
+/// Under a hypothesis (none: as described) and with the white noise of the IMU times `noise`; about the start of an earlier fit
+/// of the same hypothesis, where there is one.
+Fit fit(const Excerpt& excerpt, const Setup& stated, const CauseHypothesis* hypothesis, double noise, const Fit* earlier) {
   Excerpt changed = excerpt;
   Setup setup = as_described(stated);
   if (hypothesis != nullptr) hypothesis->apply(changed, setup);
   for (const noise::Sensor sensor : {noise::Sensor::kGyro, noise::Sensor::kAccel})
     setup.model = setup.model.with_white_noise_scaled(sensor, noise);
+  if (earlier != nullptr) {
+    setup.start = earlier->start;
+    setup.start_sensor_errors = earlier->start_sensor_errors;
+  }
   Fit result;
   try {
     const PreparedMission mission(std::move(changed.imu), std::move(changed.gnss), setup, {});
     const estimate::ForwardFilter filter(mission.mission(), mission.model(), antenna_left_to_data(mission.options(), stated));
-    const estimate::FilterResult run = filter.run(mission.start_state(filter), {});
+    const estimate::FilterState first = mission.start_state(filter);
+    result.start = mission.start();
+    result.start_sensor_errors = first.x.head(filter.layout().sensor_end());
+    const estimate::FilterResult run = filter.run(first, {});
     double nis = 0.0, dof = 0.0;
     for (const estimate::InnovationRecord& r : run.innovations) {
       nis += r.nis;
@@ -162,7 +102,7 @@ Fit fit(const Excerpt& excerpt, const Setup& stated, const Hypothesis* hypothesi
   return result;
 }
 
-Cause told(const Hypothesis& hypothesis, const Fit& fit, double gain) {
+Cause told(const CauseHypothesis& hypothesis, const Fit& fit, double gain) {
   Cause cause{hypothesis.what, hypothesis.remedy, gain};
   if (fit.time_offset_s && hypothesis.what.starts_with("the time")) {
     cause.what += fmt::format(" {:+.3f} +- {:.3f} s", *fit.time_offset_s, *fit.time_offset_sd_s);
@@ -179,7 +119,7 @@ Cause told(const Hypothesis& hypothesis, const Fit& fit, double gain) {
 
 /// Fits of one hypothesis with several factors on the noise of the IMU, side by side.
 struct Profile {
-  const Hypothesis* hypothesis = nullptr;
+  const CauseHypothesis* hypothesis = nullptr;
   std::vector<double> noise;
   std::vector<Fit> fits;
   [[nodiscard]] std::size_t best() const {
@@ -198,7 +138,8 @@ void run(const Excerpt& excerpt, const Setup& setup, std::vector<Profile>& profi
   }
   tbb::parallel_for(std::size_t{0}, missing.size(), [&](std::size_t k) {
     auto& [profile, i] = missing[k];
-    profile->fits[i] = fit(excerpt, setup, profile->hypothesis, profile->noise[i]);
+    const bool aligned = i > 0 && profile->fits.front().start;
+    profile->fits[i] = fit(excerpt, setup, profile->hypothesis, profile->noise[i], aligned ? &profile->fits.front() : nullptr);
   });
 }
 
@@ -252,12 +193,13 @@ std::vector<Cause> rank_causes(const Excerpt& excerpt, const Setup& stated) {
   constexpr double kFits = 5.0;  // on the sigmas
   constexpr std::ptrdiff_t kLikely = 3;
   if (!stated.model.members().empty()) return {};  // an excerpt has no members
-  const std::vector<Hypothesis> hypotheses = catalogue();
-  std::vector<Profile> profiles{{nullptr, {10.0, 0.03, 0.1, 0.3, 1.0, 3.0, 30.0, 100.0}, {}}};
-  for (const Hypothesis& hypothesis : hypotheses) profiles.push_back({&hypothesis, {10.0}, {}});
+  const std::vector<CauseHypothesis> hypotheses = cause_hypotheses();
+  std::vector<Profile> profiles{{nullptr, {10.0}, {}}};
+  for (const CauseHypothesis& hypothesis : hypotheses) profiles.push_back({&hypothesis, {10.0}, {}});
   run(excerpt, stated, profiles);
   const auto less_likely = [](const Profile& a, const Profile& b) { return a.log_likelihood() > b.log_likelihood(); };
   std::sort(profiles.begin() + 1, profiles.end(), less_likely);
+  profiles.front().noise = {10.0, 0.03, 0.1, 0.3, 1.0, 3.0, 30.0, 100.0};
   for (auto p = profiles.begin() + 1; p < profiles.begin() + 1 + kLikely; ++p) p->noise = {10.0, 1.0, 3.0, 30.0, 100.0};
   run(excerpt, stated, profiles);
   std::sort(profiles.begin() + 1, profiles.end(), less_likely);

@@ -20,9 +20,8 @@ namespace coast::study {
 
 namespace {
 
-constexpr double kFirstMinutes = 300.0;  // s that the start is refined over
-constexpr double kFitWindow = 1200.0;    // s that noise is fitted over
-constexpr double kShortestFit = 100.0;   // s: fewer say too little of correlated errors
+constexpr double kFitWindow = 1200.0;   // s that noise is fitted over
+constexpr double kShortestFit = 100.0;  // s: fewer say too little of correlated errors
 
 void check_overlap(const record::ImuRecording& imu, const record::GnssRecording& gnss) {
   const auto span = [](geo::GpsTime from, geo::GpsTime to) { return geo::to_string(from) + " to " + geo::to_string(to); };
@@ -219,12 +218,16 @@ void PreparedMission::run_back_to_first_epoch() {
   start_sensor_errors_ = at_first.x.head(filter.layout().sensor_end());
 }
 
-estimate::FilterResult PreparedMission::first_minutes(estimate::FilterOptions options,
+double PreparedMission::fix_interval_s() const {
+  return (gnss_.fixes.back().t - gnss_.fixes.front().t) / static_cast<double>(gnss_.fixes.size());
+}
+
+estimate::FilterResult PreparedMission::first_seconds(double seconds, estimate::FilterOptions options,
                                                       const estimate::FilterOutputs& outputs) const {
-  geo::GpsTime end = start_.nav.t + kFirstMinutes;
+  geo::GpsTime end = start_.nav.t + seconds;
   if (setup_.refine_before) {
     end = std::min(end, *setup_.refine_before);
-    options.withheld.push_back({*setup_.refine_before, *setup_.refine_before + kFirstMinutes});  // the fix at the end too
+    options.withheld.push_back({*setup_.refine_before, *setup_.refine_before + seconds});  // the fix at the end too
   }
   const estimate::ForwardFilter filter(*mission_, setup_.model, options);
   return filter.run_until(antenna_as_stated(start_state(filter), filter.layout()), end, outputs);
@@ -234,14 +237,13 @@ estimate::FilterResult PreparedMission::first_minutes(estimate::FilterOptions op
 // stays that of the alignment, so no fix counts twice for more than its linearisation.
 void PreparedMission::refine_start(const Progress& progress) {
   if (setup_.start) return;  // what the user gave stays
-  constexpr int kRounds = 4;
   const estimate::ForwardFilter filter(*mission_, setup_.model, setup_.filter);
-  for (int round = 0; round < kRounds; ++round) {
-    if (progress) progress("refining the start", static_cast<double>(round) / kRounds);
+  for (int round = 0; round < setup_.start_rounds; ++round) {
+    if (progress) progress("refining the start", static_cast<double>(round) / setup_.start_rounds);
     estimate::KnotStore first;
     estimate::FilterOutputs outputs;
     outputs.knots = &first;
-    static_cast<void>(first_minutes(setup_.filter, outputs));
+    static_cast<void>(first_seconds(kFirstMinutes, setup_.filter, outputs));
     const estimate::SmoothedKnot knot = estimate::smooth_first(first, filter.layout());
     const auto change = estimate::error_between(knot.nav, start_.nav);
     start_.nav = knot.nav;

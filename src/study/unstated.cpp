@@ -51,14 +51,14 @@ void PreparedMission::choose_time_offset(const Progress& progress) {
       align(progress);
       run_back_to_first_epoch();
       refine_start(progress);
-      return first_minutes(setup_.filter).log_likelihood;
+      return first_seconds(kFirstMinutes, setup_.filter).log_likelihood;
     } catch (const NumericalError&) {
       return -std::numeric_limits<double>::infinity();
     }
   };
   // Between fixes the course is not seen: a neighbouring maximum lies an interval of theirs away.
   const double seen = setup_.unstated.time_offset_seen_s;
-  const double interval = (gnss_.fixes.back().t - gnss_.fixes.front().t) / static_cast<double>(gnss_.fixes.size());
+  const double interval = fix_interval_s();
   double best = 0.0, most = log_likelihood_at(0.0);
   for (const double offset : {seen, seen - interval, seen + interval}) {
     if (offset != seen && interval < kCoarse) break;
@@ -92,7 +92,7 @@ void PreparedMission::test_noise() {
   const Eigen::VectorXd found = start_sensor_errors_;
   const ins::InitialState start = start_;
   refine_start({});
-  const estimate::FilterResult seen = first_minutes(setup_.filter);
+  const estimate::FilterResult seen = first_seconds(kFirstMinutes, setup_.filter);
   const estimate::StateLayout layout = estimate::ForwardFilter(*mission_, setup_.model, setup_.filter).layout();
   const auto worst = largest_sensor_error(layout, seen.last.x);
   start_ = start;
@@ -130,7 +130,7 @@ void PreparedMission::adapt_drift() {
     estimate::KnotStore knots;
     estimate::FilterOutputs outputs;
     outputs.knots = &knots;
-    static_cast<void>(first_minutes(setup_.filter, outputs));
+    static_cast<void>(first_seconds(kFirstMinutes, setup_.filter, outputs));
     const estimate::StateLayout layout = estimate::ForwardFilter(*mission_, setup_.model, setup_.filter).layout();
     const DriftFactors seen = drift_seen(layout, estimate::smooth(knots, layout, {}, estimate::KnotSampling(1.0)), least);
     if (seen.largest() == 1.0) return;

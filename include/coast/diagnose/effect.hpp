@@ -4,6 +4,7 @@
 #include <Eigen/Core>
 #include <array>
 #include <functional>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -71,6 +72,13 @@ struct FixedParameter {
   std::string_view unit;
 };
 
+/// A value of the run file that states an effect.
+struct RunKey {
+  std::string_view section;
+  std::string_view name;
+  std::function<std::string(const study::Setup&)> text;  ///< the value as the file has it
+};
+
 /// One effect: an equation, linear in some coefficients (`axes`) that are judged one by one. measured = true + error.
 struct Effect {
   enum class Begins { kWithTheMission, kAtSomeTime };
@@ -100,6 +108,7 @@ struct Effect {
   std::function<void(const WheelSignals&, Eigen::Ref<Eigen::Matrix2Xd>)> slip = {};
   /// How the configuration takes coefficients exactly; where absent, they are taken out of the recordings.
   std::function<void(study::Setup&, const Eigen::VectorXd&)> configure = {};
+  std::optional<RunKey> key = {};  ///< where the run file then has it
   std::vector<FixedParameter> fixed = {};
   std::string_view relation{};  ///< of an effect that has no name: the product of signals that it is
 };

@@ -109,11 +109,18 @@ struct Measurement {
   std::vector<std::size_t> left_out = {};       ///< likewise: members refused in this block
 };
 
+/// Positions that differ from one instant on and were refused, until they were followed.
+struct GnssJump {
+  geo::GpsTime t;
+  Eigen::Vector3d by_n;  ///< fixes less filter where they were followed, north east down, m
+};
+
 struct FilterResult {
   FilterState last;
   std::vector<InnovationRecord> innovations;
   double log_likelihood = 0.0;  ///< of the used updates' innovations
-  record::Events events;
+  std::vector<GnssJump> jumps;
+  record::Events events;  ///< `gnss_jump` of each, among others
 };
 
 /// Where a pass delivers; every member may be empty.

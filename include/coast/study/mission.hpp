@@ -39,6 +39,7 @@ struct Setup {
   std::optional<ins::InitialState> start;  ///< given; otherwise found
   /// Sensor states that a given start begins with, by the layout; empty: what the alignment knows.
   Eigen::VectorXd start_sensor_errors;
+  int start_rounds = 4;  ///< at most, of the refinement of a start that was found
   /// Where the first studied outage begins: the start is refined with fixes before it alone, or the outage would look too good.
   std::optional<geo::GpsTime> refine_before;
   /// Noise is fitted to what comes before it, where that is at least 100 s.
@@ -116,6 +117,8 @@ class PreparedMission {
                                      const Progress& progress);
 
  private:
+  static constexpr double kFirstMinutes = 300.0;  ///< s that the start is refined over
+
   void find_standstill();
   void align(const Progress& progress);
   void run_back_to_first_epoch();
@@ -135,9 +138,10 @@ class PreparedMission {
   void adapt_drift();
   void note_adaptations();
   void restart_behind_gaps();
-  /// The filter over them, as far as the start may look.
-  [[nodiscard]] estimate::FilterResult first_minutes(estimate::FilterOptions options,
+  /// The filter over so many, as far as the start may look.
+  [[nodiscard]] estimate::FilterResult first_seconds(double seconds, estimate::FilterOptions options,
                                                      const estimate::FilterOutputs& outputs = {}) const;
+  [[nodiscard]] double fix_interval_s() const;  ///< mean
 
   record::ImuRecording imu_;
   record::GnssRecording gnss_;

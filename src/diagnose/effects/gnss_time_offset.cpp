@@ -1,5 +1,7 @@
 #include "time_offset.hpp"
 
+#include <fmt/format.h>
+
 namespace coast::diagnose {
 
 void time_offset_position(const FixSignals& s, Columns D) {
@@ -25,6 +27,8 @@ Effect gnss_time_offset() {
       .position = time_offset_position,
       .velocity = time_offset_velocity,
       .configure = [](study::Setup& setup, const Eigen::VectorXd& value) { setup.time_offset_s += value(0); },
+      .key =
+          RunKey{"gnss", "time_offset_s", [](const study::Setup& setup) { return fmt::format("{:.5f}", setup.time_offset_s); }},
   };
 }
 

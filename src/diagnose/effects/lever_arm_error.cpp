@@ -1,5 +1,7 @@
 #include "lever_arm.hpp"
 
+#include <fmt/format.h>
+
 namespace coast::diagnose {
 
 void lever_arm_position(const FixSignals& s, Columns D) {
@@ -25,6 +27,11 @@ Effect lever_arm_error() {
       .position = lever_arm_position,
       .velocity = lever_arm_velocity,
       .configure = [](study::Setup& setup, const Eigen::VectorXd& value) { setup.lever_arm_b += value; },
+      .key = RunKey{"imu", "lever_arm_m",
+                    [](const study::Setup& setup) {
+                      const Eigen::Vector3d& l = setup.lever_arm_b;
+                      return fmt::format("[{:.4f}, {:.4f}, {:.4f}]", l.x(), l.y(), l.z());
+                    }},
   };
 }
 
