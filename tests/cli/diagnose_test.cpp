@@ -106,11 +106,11 @@ TEST(DiagnoseCommand, FindsAWrongLeverArmAndTheRunWithoutItFits) {
   EXPECT_NEAR(after, 1.0, 0.1);
 
   // What a key can state is stated by it.
-  const std::string written = text_of(out / "run.diagnosed.yaml");
-  EXPECT_EQ(written.find("lever_arm_error"), std::string::npos) << written;
-  const std::size_t key = written.find("lever_arm_m: [");
-  ASSERT_NE(key, std::string::npos) << written;
-  EXPECT_EQ(written.find("lever_arm_m: [", key + 1), std::string::npos) << written;
+  const nlohmann::json written = test::load_yaml_as_json(out / "run.diagnosed.yaml");
+  EXPECT_FALSE(written.contains("effects"));
+  const nlohmann::json stated = test::load_yaml_as_json(wrong);
+  EXPECT_NEAR(written["imu"]["lever_arm_m"][1].get<double>(),
+              stated["imu"]["lever_arm_m"][1].get<double>() + size["value"].get<double>(), 1e-4);
 }
 
 TEST(DiagnoseCommand, SaysWhatTheUsersOwnSimulationLacks) {
