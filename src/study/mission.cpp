@@ -222,15 +222,10 @@ double PreparedMission::fix_interval_s() const {
   return (gnss_.fixes.back().t - gnss_.fixes.front().t) / static_cast<double>(gnss_.fixes.size());
 }
 
-estimate::FilterResult PreparedMission::first_seconds(double seconds, estimate::FilterOptions options,
+estimate::FilterResult PreparedMission::first_seconds(double seconds, const estimate::FilterOptions& options,
                                                       const estimate::FilterOutputs& outputs) const {
-  geo::GpsTime end = start_.nav.t + seconds;
-  if (setup_.refine_before) {
-    end = std::min(end, *setup_.refine_before);
-    options.withheld.push_back({*setup_.refine_before, *setup_.refine_before + seconds});  // the fix at the end too
-  }
   const estimate::ForwardFilter filter(*mission_, setup_.model, options);
-  return filter.run_until(antenna_as_stated(start_state(filter), filter.layout()), end, outputs);
+  return filter.run_until(antenna_as_stated(start_state(filter), filter.layout()), start_.nav.t + seconds, outputs);
 }
 
 // Gauss-Newton on the start: the filter is linearised about a start that the data themselves have corrected. The uncertainty
@@ -238,12 +233,18 @@ estimate::FilterResult PreparedMission::first_seconds(double seconds, estimate::
 void PreparedMission::refine_start(const Progress& progress) {
   if (setup_.start) return;  // what the user gave stays
   const estimate::ForwardFilter filter(*mission_, setup_.model, setup_.filter);
+  estimate::FilterOptions options = setup_.filter;
+  double seconds = kFirstMinutes;
+  if (const auto& before = setup_.refine_before) {
+    options.withheld.push_back({*before, *before + kFirstMinutes});  // a fix at the end too
+    seconds = std::min(seconds, *before - start_.nav.t);
+  }
   for (int round = 0; round < setup_.start_rounds; ++round) {
     if (progress) progress("refining the start", static_cast<double>(round) / setup_.start_rounds);
     estimate::KnotStore first;
     estimate::FilterOutputs outputs;
     outputs.knots = &first;
-    static_cast<void>(first_seconds(kFirstMinutes, setup_.filter, outputs));
+    static_cast<void>(first_seconds(seconds, options, outputs));
     const estimate::SmoothedKnot knot = estimate::smooth_first(first, filter.layout());
     const auto change = estimate::error_between(knot.nav, start_.nav);
     start_.nav = knot.nav;

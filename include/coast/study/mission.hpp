@@ -138,8 +138,9 @@ class PreparedMission {
   void adapt_drift();
   void note_adaptations();
   void restart_behind_gaps();
-  /// The filter over so many, as far as the start may look.
-  [[nodiscard]] estimate::FilterResult first_seconds(double seconds, estimate::FilterOptions options,
+  /// The filter over so many. What is constant is sought there, whatever outages are studied: a few numbers of hundreds of
+  /// fixes.
+  [[nodiscard]] estimate::FilterResult first_seconds(double seconds, const estimate::FilterOptions& options,
                                                      const estimate::FilterOutputs& outputs = {}) const;
   [[nodiscard]] double fix_interval_s() const;  ///< mean
 
