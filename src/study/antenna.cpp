@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "coast/study/mission.hpp"
 #include "coast/study/plausibility.hpp"
@@ -83,7 +84,9 @@ void PreparedMission::test_antenna() {
   constexpr double kLeastGain = 15.0;  // of the log-likelihood
   constexpr double kLeastTime = 3e-3;  // s: less moves a car by centimetres
   constexpr double kLeastArm = 0.03;   // m
-  constexpr double kLargestArm = 3.0;  // m, of a difference: a car's arm with its signs turned is two off
+  // Of a difference: beyond it something else is wrong, which neither must hide.
+  constexpr double kLargestTime = 1.5;  // s: what lies farther is found by turns
+  constexpr double kLargestArm = 3.0;   // m: a car's arm with its signs turned is two off
   if (!tested_.time_offset && !tested_.lever_arm) return;
   const auto late = [&](const AntennaFit& fit) {
     return std::abs(fit.time_offset_s) > std::max(kLeastTime, kSigmas * fit.time_offset_sd_s);
@@ -95,10 +98,10 @@ void PreparedMission::test_antenna() {
     return with.log_likelihood - without.log_likelihood > kLeastGain * with.excess;
   };
   AntennaFit found = fit_antenna(tested_);
-  if (found.lever_arm_m.lpNorm<Eigen::Infinity>() > kLargestArm) {  // something else is wrong, which an arm must not hide
-    tested_.lever_arm = false;
-    mission_->lever_arm_b = setup_.lever_arm_b;
-    setup_.filter.auxiliary.lever_arm_sd_m = 0.0;
+  const bool no_arm = found.lever_arm_m.lpNorm<Eigen::Infinity>() > kLargestArm;
+  const bool no_time = std::abs(found.time_offset_s) > kLargestTime;
+  if (no_arm || no_time) {
+    keep_as_stated({.time_offset = no_time, .lever_arm = no_arm});
     found = fit_antenna(tested_);
   }
   const AntennaFit time_alone = tested_.lever_arm ? fit_antenna({tested_.time_offset, false}) : found;
@@ -114,6 +117,19 @@ void PreparedMission::test_antenna() {
     found = time_first ? time_alone : arm_alone;
   }
   take_antenna(shown, found);
+}
+
+void PreparedMission::keep_as_stated(AntennaChoice which) {
+  if (which.time_offset) {
+    tested_.time_offset = false;
+    mission_->time_offset_s = setup_.time_offset_s;
+    setup_.filter.auxiliary.time_offset_sd_s = 0.0;
+  }
+  if (which.lever_arm) {
+    tested_.lever_arm = false;
+    mission_->lever_arm_b = setup_.lever_arm_b;
+    setup_.filter.auxiliary.lever_arm_sd_m = 0.0;
+  }
 }
 
 void PreparedMission::take_antenna(AntennaChoice shown, const AntennaFit& found) {
@@ -133,11 +149,16 @@ void PreparedMission::take_antenna(AntennaChoice shown, const AntennaFit& found)
 }
 
 // The offset enters as velocity times time, which holds for milliseconds, and whatever else compares with fixes wants them
-// where they belong: time offset and lever arm take what was found until nothing is.
+// where they belong: time offset and lever arm take what was found until nothing is. Steps that grow end nowhere: what the data
+// were to tell stays as stated then.
 void PreparedMission::refine_antenna(const Progress& progress) {
   constexpr int kRounds = 5;
   constexpr double kSettledTime = 5e-4;  // s
   constexpr double kSettledArm = 1e-3;   // m
+  constexpr double kSmall = 0.1;         // of a wide prior: below it noise makes steps grow
+  const double first_time = mission_->time_offset_s;
+  const Eigen::Vector3d first_arm = mission_->lever_arm_b;
+  double before = std::numeric_limits<double>::infinity();
   for (int round = 0; round < kRounds; ++round) {
     if (!antenna_is_estimated()) return;
     if (progress) progress("finding antenna and time offset", static_cast<double>(round) / kRounds);
@@ -147,6 +168,15 @@ void PreparedMission::refine_antenna(const Progress& progress) {
     const double time = layout.time_offset() ? x(*layout.time_offset()) : 0.0;
     const Eigen::Vector3d arm = layout.lever_arm() ? x.segment<3>(*layout.lever_arm()).eval() : Eigen::Vector3d::Zero();
     if (std::abs(time) < kSettledTime && arm.norm() < kSettledArm) return;
+    const double size = std::max(std::abs(time) / kWideTime, arm.norm() / kWideArm);
+    if (size > kSmall && size > before) {
+      mission_->time_offset_s = first_time;
+      mission_->lever_arm_b = first_arm;
+      keep_as_stated(tested_);
+      refine_start(progress);
+      return;
+    }
+    before = size;
     mission_->time_offset_s += time;
     mission_->lever_arm_b += arm;
     refine_start(progress);

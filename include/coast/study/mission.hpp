@@ -133,6 +133,7 @@ class PreparedMission {
   [[nodiscard]] AntennaFit fit_antenna(AntennaChoice estimated);
   void test_antenna();
   void take_antenna(AntennaChoice shown, const AntennaFit& found);
+  void keep_as_stated(AntennaChoice which);
   void free_antenna();
   void test_noise();
   void adapt_drift();
