@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include <functional>
 #include <thread>
 
 #include "program.hpp"
@@ -20,15 +21,22 @@ std::size_t times(const std::string& text, const std::string& word) {
   return count;
 }
 
-TEST(Progress, EachStageIsToldWhereItBeginsFirst) {
+/// What a job leaves on standard error.
+std::string told_by(bool quiet, milliseconds every, const std::function<void(ProgressLine&)>& job) {
   testing::internal::CaptureStderr();
   {
-    ProgressLine line(false);
+    ProgressLine line(quiet, every);
+    job(line);
+  }
+  return testing::internal::GetCapturedStderr();
+}
+
+TEST(Progress, EachStageIsToldWhereItBeginsFirst) {
+  const std::string told = told_by(false, std::chrono::seconds(30), [](ProgressLine& line) {
     for (int round = 0; round < 3; ++round)
       for (const char* stage : {"filtering forward", "smoothing backward"})
         for (int i = 0; i <= 10; ++i) line.show(stage, 0.1 * i);
-  }
-  const std::string told = testing::internal::GetCapturedStderr();
+  });
   EXPECT_EQ(times(told, "filtering forward"), 1U) << told;
   EXPECT_EQ(times(told, "smoothing backward"), 1U) << told;
   EXPECT_EQ(times(told, "\n"), 2U) << told;
@@ -36,27 +44,23 @@ TEST(Progress, EachStageIsToldWhereItBeginsFirst) {
 }
 
 TEST(Progress, AStepThatDoesNotCallIsToldRegularlyWithTheTimeLeft) {
-  testing::internal::CaptureStderr();
-  {
-    ProgressLine line(false, milliseconds(400));
+  const std::string told = told_by(false, milliseconds(400), [](ProgressLine& line) {
     line.show("estimating", 0.0);
     std::this_thread::sleep_for(milliseconds(1100));
     line.show("estimating", 0.5);  // as long again
     std::this_thread::sleep_for(milliseconds(450));
-  }
-  const std::string told = testing::internal::GetCapturedStderr();
+  });
   EXPECT_GE(times(told, "estimating\n"), 2U) << told;
   EXPECT_GE(times(told, "estimating 50 %, 1 s left\n"), 1U) << told;
 }
 
 TEST(Progress, QuietTellsNothing) {
-  testing::internal::CaptureStderr();
-  {
-    ProgressLine line(true, milliseconds(1));
-    line.show("estimating", 0.0);
-    std::this_thread::sleep_for(milliseconds(20));
-  }
-  EXPECT_EQ(testing::internal::GetCapturedStderr(), "");
+  EXPECT_EQ(told_by(true, milliseconds(1),
+                    [](ProgressLine& line) {
+                      line.show("estimating", 0.0);
+                      std::this_thread::sleep_for(milliseconds(20));
+                    }),
+            "");
 }
 
 TEST(Progress, JobsTellTheirStages) {

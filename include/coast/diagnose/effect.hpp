@@ -108,7 +108,7 @@ struct Effect {
   std::function<void(const WheelSignals&, Eigen::Ref<Eigen::Matrix2Xd>)> slip = {};
   /// How the configuration takes coefficients exactly; where absent, they are taken out of the recordings.
   std::function<void(study::Setup&, const Eigen::VectorXd&)> configure = {};
-  std::optional<RunKey> key = {};  ///< where the run file then has it
+  std::optional<RunKey> key = {};  ///< of the run file, where one states the effect
   std::vector<FixedParameter> fixed = {};
   std::string_view relation{};  ///< of an effect that has no name: the product of signals that it is
 };

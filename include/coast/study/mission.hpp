@@ -139,8 +139,8 @@ class PreparedMission {
   void adapt_drift();
   void note_adaptations();
   void restart_behind_gaps();
-  /// The filter over so many. What is constant is sought there, whatever outages are studied: a few numbers of hundreds of
-  /// fixes.
+  /// Filters so many seconds from the start, also those that a studied outage withholds later: what is sought there is
+  /// constant, a few numbers from hundreds of fixes.
   [[nodiscard]] estimate::FilterResult first_seconds(double seconds, const estimate::FilterOptions& options,
                                                      const estimate::FilterOutputs& outputs = {}) const;
   [[nodiscard]] double fix_interval_s() const;  ///< mean
