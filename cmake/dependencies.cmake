@@ -1,4 +1,4 @@
-# Everything here is a Debian 12 package; tools/packages.txt is the list that tools/test and tools/demo install.
+# Everything here is a Debian 12 package of tools/packages.txt; tests have their own list, tools/test-packages.txt.
 find_package(Eigen3 3.4 REQUIRED NO_MODULE)
 list(APPEND CMAKE_MODULE_PATH /usr/share/cmake/geographiclib)
 find_package(GeographicLib REQUIRED)
@@ -15,11 +15,11 @@ find_package(Threads REQUIRED)
 # CHOLMOD of Debian 12 comes without files for CMake.
 find_library(CHOLMOD_LIBRARY cholmod REQUIRED)
 find_path(CHOLMOD_INCLUDE_DIR cholmod.h PATH_SUFFIXES suitesparse REQUIRED)
-add_library(coast_cholmod INTERFACE)
-target_include_directories(coast_cholmod SYSTEM INTERFACE ${CHOLMOD_INCLUDE_DIR})
+add_library(coast_cholmod INTERFACE IMPORTED)
+target_include_directories(coast_cholmod INTERFACE ${CHOLMOD_INCLUDE_DIR})
 target_link_libraries(coast_cholmod INTERFACE ${CHOLMOD_LIBRARY})
 
-# FindGeographicLib gives variables; one imported target keeps its headers out of our warnings.
-add_library(coast_geographiclib INTERFACE)
-target_include_directories(coast_geographiclib SYSTEM INTERFACE ${GeographicLib_INCLUDE_DIRS})
+# FindGeographicLib gives variables; an imported target keeps its headers out of our warnings and out of what is installed.
+add_library(coast_geographiclib INTERFACE IMPORTED)
+target_include_directories(coast_geographiclib INTERFACE ${GeographicLib_INCLUDE_DIRS})
 target_link_libraries(coast_geographiclib INTERFACE ${GeographicLib_LIBRARIES})

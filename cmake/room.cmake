@@ -1,13 +1,15 @@
 # coast_room(<room> SOURCES <files> [DEPS <targets>]): one static library per room, coast_<room>, alias coast::<room>.
 # A wrong include does not link: a room sees only what DEPS names.
 
+# What an installed coast's user gets of them is the include directory alone: our warnings are ours.
 add_library(coast_options INTERFACE)
-target_include_directories(coast_options INTERFACE ${PROJECT_SOURCE_DIR}/include)
-target_compile_options(coast_options INTERFACE -Wall -Wextra -Wpedantic -Wconversion -Wshadow -Werror)
+target_include_directories(coast_options INTERFACE $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}/include> $<INSTALL_INTERFACE:include>)
+target_compile_features(coast_options INTERFACE cxx_std_20)
+target_compile_options(coast_options INTERFACE $<BUILD_INTERFACE:-Wall -Wextra -Wpedantic -Wconversion -Wshadow -Werror>)
 # Numbers must not depend on the compiler's mood: no contraction to fused multiply-add.
-target_compile_options(coast_options INTERFACE -ffp-contract=off)
+target_compile_options(coast_options INTERFACE $<BUILD_INTERFACE:-ffp-contract=off>)
 # It means headers, and takes for one each source that is compiled as a part of several.
-target_compile_options(coast_options INTERFACE $<$<AND:$<BOOL:${COAST_UNITY}>,$<CXX_COMPILER_ID:GNU>>:-Wno-subobject-linkage>)
+target_compile_options(coast_options INTERFACE $<BUILD_INTERFACE:$<$<AND:$<BOOL:${COAST_UNITY}>,$<CXX_COMPILER_ID:GNU>>:-Wno-subobject-linkage>>)
 if(COAST_SANITIZE)
   # Left out are checks of pointers, which the address sanitizer makes where they are used: they double Eigen's compile time.
   target_compile_options(coast_options INTERFACE -fsanitize=address,undefined -fno-sanitize-recover=all -fno-omit-frame-pointer

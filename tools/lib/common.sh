@@ -11,13 +11,13 @@ die() {
   exit 1
 }
 
-# Installs what tools/packages.txt names and the machine lacks; asks for nothing where nothing is missing.
+# install_packages LIST...: installs what the files of packages name and the machine lacks; asks for nothing where nothing is missing.
 install_packages() {
   local missing=() package
   while read -r package; do
     [[ -z $package || $package == \#* ]] && continue
     dpkg-query -W -f '${db:Status-Abbrev}' "$package" 2>/dev/null | grep -q '^ii' || missing+=("$package")
-  done <tools/packages.txt
+  done < <(cat "$@")
   # Any npm will do: Debian's own brings 400 packages and is taken only where there is none.
   command -v npm >/dev/null || missing+=(nodejs npm)
   ((${#missing[@]})) || return 0
