@@ -148,6 +148,14 @@ void KnotStore::append(const Knot& knot) {
   }
 }
 
+void KnotStore::clear() {
+  memory_.clear();
+  file_.reset();
+  spilled_ = 0;
+  offsets_.clear();
+  times_.clear();
+}
+
 void KnotStore::spill() {
   if (!file_) file_.reset(std::tmpfile());
   if (!file_) throw OutputError("temporary file of the smoother", "cannot be opened");

@@ -105,6 +105,7 @@ PreparedMission::PreparedMission(record::ImuRecording imu, record::GnssRecording
   }
   restart_behind_gaps();
   note_adaptations();
+  first_knots_ = estimate::KnotStore();
   mission_->carrier = setup_.carrier.get();
 }
 
@@ -241,11 +242,11 @@ void PreparedMission::refine_start(const Progress& progress) {
   }
   for (int round = 0; round < setup_.start_rounds; ++round) {
     if (progress) progress("refining the start", static_cast<double>(round) / setup_.start_rounds);
-    estimate::KnotStore first;
+    first_knots_.clear();
     estimate::FilterOutputs outputs;
-    outputs.knots = &first;
+    outputs.knots = &first_knots_;
     static_cast<void>(first_seconds(seconds, options, outputs));
-    const estimate::SmoothedKnot knot = estimate::smooth_first(first, filter.layout());
+    const estimate::SmoothedKnot knot = estimate::smooth_first(first_knots_, filter.layout());
     const auto change = estimate::error_between(knot.nav, start_.nav);
     start_.nav = knot.nav;
     start_sensor_errors_ = knot.x.head(filter.layout().sensor_end());

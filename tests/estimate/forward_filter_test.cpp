@@ -219,6 +219,28 @@ TEST_F(ForwardFilterTest, ResumesFromAKnotAsIfItHadNotStopped) {
   EXPECT_EQ(rest.innovations.size(), after);
 }
 
+// Emptied, be it in memory or spilled, a store is as a new one.
+TEST_F(ForwardFilterTest, AnEmptiedStoreTakesAnotherPass) {
+  record();
+  for (const std::size_t limit : {std::size_t{1} << 14, std::size_t{1} << 26}) {
+    KnotStore fresh, used(limit);
+    FilterOutputs outputs;
+    outputs.knots = &used;
+    static_cast<void>(run(outputs));
+    used.clear();
+    EXPECT_EQ(used.size(), 0u);
+    static_cast<void>(run(outputs));
+    outputs.knots = &fresh;
+    static_cast<void>(run(outputs));
+    ASSERT_EQ(used.size(), fresh.size());
+    for (std::size_t i = 0; i < fresh.size(); i += 10) {
+      EXPECT_EQ(used.time(i), fresh.time(i));
+      EXPECT_EQ(used.at(i).P_post, fresh.at(i).P_post) << i;
+      EXPECT_EQ(used.nominal_at(i).post.x, fresh.nominal_at(i).post.x) << i;
+    }
+  }
+}
+
 TEST_F(ForwardFilterTest, CompensatedIncrementsLeadToTheSameTrajectory) {
   record();
   const FilterResult raw = run({});

@@ -54,6 +54,8 @@ class KnotStore {
  public:
   explicit KnotStore(std::size_t memory_limit_bytes = std::size_t{64} << 20);
   void append(const Knot& knot);
+  /// Leaves no knot, and the memory for those of another pass.
+  void clear();
   [[nodiscard]] std::size_t size() const { return offsets_.size(); }
   [[nodiscard]] Knot at(std::size_t index) const;
   /// What the nominal trajectory goes on from, and the interval; covariance, transition and updates are empty.

@@ -8,6 +8,7 @@
 
 #include "coast/estimate/batch_smoother.hpp"
 #include "coast/estimate/forward_filter.hpp"
+#include "coast/estimate/knot.hpp"
 #include "coast/estimate/noise_fit.hpp"
 #include "coast/ins/alignment.hpp"
 #include "coast/study/bias_drift.hpp"
@@ -151,6 +152,7 @@ class PreparedMission {
   std::unique_ptr<estimate::Mission> mission_;
   ins::InitialState start_;
   Eigen::VectorXd start_sensor_errors_;  ///< estimated, by the layout of the setup; empty: zero
+  estimate::KnotStore first_knots_;      ///< of the first minutes; one for all passes of the preparation, and empty after it
   std::optional<estimate::NoiseFit> noise_fit_;
   std::optional<double> noise_ratio_;  ///< squared innovations over their expectation, where that had the noise fitted
   std::optional<double> velocity_lag_;
