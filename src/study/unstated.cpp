@@ -132,7 +132,8 @@ void PreparedMission::adapt_drift() {
     outputs.knots = &first_knots_;
     static_cast<void>(first_seconds(kFirstMinutes, setup_.filter, outputs));
     const estimate::StateLayout layout = estimate::ForwardFilter(*mission_, setup_.model, setup_.filter).layout();
-    const DriftFactors seen = drift_seen(layout, estimate::smooth(first_knots_, layout, {}, estimate::KnotSampling(1.0)), least);
+    const DriftFactors seen =
+        drift_seen(layout, estimate::smooth(first_knots_, layout, {}, estimate::KnotSampling(1.0)), least);
     if (seen.largest() == 1.0) return;
     const DriftFactors before = drift_;
     drift_.gyro = drift_.gyro.cwiseProduct(seen.gyro).cwiseMin(kLargest);
