@@ -143,11 +143,17 @@ void run(const Excerpt& excerpt, const Setup& setup, std::vector<Profile>& profi
   });
 }
 
-Cause noise_cause(double factor, double gain) {
+// What a run file asks for is no advice. Beyond the noise that it has fitted, a run whose file says nothing of the IMU's noise
+// adapts the drift of its biases.
+std::optional<Cause> noise_cause(double factor, double gain, const estimate::NoiseFitChoice& fitted) {
   if (factor > 1.0)
-    return {fmt::format("the IMU's noise is about {:.0f} times what is stated", factor), "`imu: {noise: estimated}`", gain};
-  return {fmt::format("the noise of the fixes is about {:.0f} times what is stated", 1.0 / factor),
-          "`gnss: {noise: estimated}`", gain};
+    return Cause{fmt::format("the IMU's noise is about {:.0f} times what is stated", factor),
+                 fitted.imu_white_noise ? "leave `imu.noise` out: the drift of the biases is then adapted too"
+                                        : "`imu: {noise: estimated}`",
+                 gain};
+  if (fitted.gnss_scale) return std::nullopt;
+  return Cause{fmt::format("the noise of the fixes is about {:.0f} times what is stated", 1.0 / factor),
+               "`gnss: {noise: estimated}`", gain};
 }
 
 // A gap stays a gap: the next sample is added only where it follows at once.
@@ -218,8 +224,10 @@ std::vector<Cause> rank_causes(const Excerpt& excerpt, const Setup& stated) {
   }
   const auto as_stated = static_cast<std::size_t>(std::ranges::find(described.noise, 1.0) - described.noise.begin());
   const double gain = least - described.fits[as_stated].log_likelihood;
-  if (aligned && std::isfinite(gain) && gain > kLeastGain)
-    causes.push_back(noise_cause(described.noise[described.best()], gain));
+  if (!aligned || !std::isfinite(gain) || gain < kLeastGain) return causes;
+  constexpr estimate::NoiseFitChoice kNothing{.gnss_scale = false, .correlated_gnss = false, .imu_white_noise = false};
+  if (auto cause = noise_cause(described.noise[described.best()], gain, stated.noise_fit.value_or(kNothing)))
+    causes.push_back(std::move(*cause));
   return causes;
 }
 

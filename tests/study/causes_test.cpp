@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <ostream>
+#include <random>
 
 #include "coast/geo/units.hpp"
 #include "simulated.hpp"
@@ -66,6 +67,33 @@ INSTANTIATE_TEST_SUITE_P(Kinds, ReadWrongly,
 
 TEST(Causes, AreNoneWhereTheRecordingIsReadRightly) {
   for (const Cause& cause : causes_of({"", "", signs(1, 1, 1), 0.0})) ADD_FAILURE() << cause.what << ' ' << cause.gain;
+}
+
+// Advice that the run file has followed already is none.
+TEST(Causes, NoiseThatIsFittedIsNotAdvisedAgain) {
+  const simulate::Scenario scenario = test::drive(360.0, 61);
+  simulate::SimulatedMission recording = simulate::simulate(scenario);
+  std::mt19937_64 random(5);
+  std::normal_distribution<double> normal;
+  const auto draw = [&](double sigma) -> Eigen::Vector3d {
+    return sigma * Eigen::Vector3d(normal(random), normal(random), normal(random));
+  };
+  for (record::ImuSample& s : recording.imu.samples) {  // far beyond the model's densities
+    s.dtheta += s.dt * draw(0.05);
+    s.dv += s.dt * draw(1.0);
+  }
+  const Excerpt excerpt = excerpt_of(recording.imu, recording.gnss);
+  study::Setup setup = test::setup_of(scenario);
+  const auto noise = [&] {
+    for (const Cause& cause : rank_causes(excerpt, setup))
+      if (cause.what.find("the IMU's noise is about") != std::string::npos) return cause.remedy;
+    return std::string();
+  };
+  EXPECT_EQ(noise(), "`imu: {noise: estimated}`");
+  setup.noise_fit = estimate::NoiseFitChoice{.gnss_scale = false, .correlated_gnss = false, .imu_white_noise = true};
+  const std::string beyond = noise();
+  EXPECT_FALSE(beyond.empty());
+  EXPECT_EQ(beyond.find("estimated"), std::string::npos) << beyond;
 }
 
 }  // namespace
