@@ -143,15 +143,12 @@ void run(const Excerpt& excerpt, const Setup& setup, std::vector<Profile>& profi
   });
 }
 
-// What a run file asks for is no advice. Beyond the noise that it has fitted, a run whose file says nothing of the IMU's noise
-// adapts the drift of its biases.
+// What a run file asks for is no advice.
 std::optional<Cause> noise_cause(double factor, double gain, const estimate::NoiseFitChoice& fitted) {
+  if (factor > 1.0 ? fitted.imu_white_noise : fitted.gnss_scale) return std::nullopt;
   if (factor > 1.0)
-    return Cause{fmt::format("the IMU's noise is about {:.0f} times what is stated", factor),
-                 fitted.imu_white_noise ? "leave `imu.noise` out: the drift of the biases is then adapted too"
-                                        : "`imu: {noise: estimated}`",
+    return Cause{fmt::format("the IMU's noise is about {:.0f} times what is stated", factor), "`imu: {noise: estimated}`",
                  gain};
-  if (fitted.gnss_scale) return std::nullopt;
   return Cause{fmt::format("the noise of the fixes is about {:.0f} times what is stated", 1.0 / factor),
                "`gnss: {noise: estimated}`", gain};
 }
