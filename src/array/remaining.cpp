@@ -89,11 +89,16 @@ double level_sd_of_mean(const std::vector<noise::StaticSignal>& records) {
 
 RemainingErrors remaining_errors(const Signals& signals, int channel, double average_s, double white_factor) {
   if (signals.sensors.size() < 2) throw std::invalid_argument("remaining_errors: fewer than 2 sensors");
-  const auto block = static_cast<std::size_t>(std::max(1.0, std::round(average_s / signals.dt)));
-  const std::vector<noise::StaticSignal> records = averaged_residuals(signals, channel, block);
+  constexpr double kShortestAverage = 0.1;  // s: below it filters of the sensors show
+  auto block = static_cast<std::size_t>(std::max(1.0, std::round(average_s / signals.dt)));
+  std::vector<noise::StaticSignal> records = averaged_residuals(signals, channel, block);
+  while (records.front().values.size() < kFewestAverages && static_cast<double>(block / 2) * signals.dt >= kShortestAverage) {
+    block /= 2;  // a short record, or one of which much was left out
+    records = averaged_residuals(signals, channel, block);
+  }
   if (records.front().values.size() < kFewestAverages)
     throw std::invalid_argument(fmt::format("remaining_errors: {} averages over {} s with all sensors, at least {}",
-                                            records.front().values.size(), average_s, kFewestAverages));
+                                            records.front().values.size(), records.front().interval, kFewestAverages));
   const FittedSum white = fit_sum(records, {"white_noise"});
   const FittedSum both = fit_sum(records, {"white_noise", "gauss_markov"});
   const FittedSum& best = both.bic < white.bic ? both : white;

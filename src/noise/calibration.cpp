@@ -12,6 +12,7 @@
 #include "coast/noise/chi_square.hpp"
 #include "coast/record/error.hpp"
 #include "model_search.hpp"
+#include "resolution.hpp"
 
 namespace coast::noise {
 
@@ -29,7 +30,18 @@ std::vector<std::size_t> places_of(const std::vector<Outlier>& outliers, const S
   return places;
 }
 
+/// Where a step of the sensor is several sigma every sample off the commonest value looks like an outlier, and without these
+/// nothing varies: then they are the signal.
+bool leave_a_constant(const std::vector<Outlier>& outliers, const std::vector<StaticSignal>& records) {
+  for (std::size_t r = 0; r < records.size(); ++r) {
+    const StaticSignal rest = without(records[r], places_of(outliers, records[r], r));
+    if (rest.values.empty() || std::ranges::min(rest.values) == std::ranges::max(rest.values)) return true;
+  }
+  return false;
+}
+
 bool to_be_excluded(const std::vector<Outlier>& outliers, const std::vector<StaticSignal>& records, Outliers what) {
+  if (leave_a_constant(outliers, records)) return false;
   constexpr double kMatters = 0.01;  // of the sum of squares, whose expectation is the number of samples
   if (what != Outliers::kWhereTheyMatter) return what == Outliers::kExclude;
   double squares = 0.0;
@@ -93,6 +105,24 @@ void bootstrap_intervals(const Likelihood& likelihood, const Fit& fit, const Cal
   }
 }
 
+/// What makes an estimate doubtful whatever its interval says.
+void remark_on_the_fit(const std::vector<StaticSignal>& records, const Fit& fit, Sensor sensor,
+                       std::vector<std::string>& remarks) {
+  if (!fit.converged)
+    remarks.emplace_back("The fit did NOT CONVERGE: another sum of processes, or a longer record, is likelier to.");
+  for (const StaticSignal& record : records) {
+    const Resolution resolution = resolution_of(record);
+    if (!resolution.hides_the_noise()) continue;
+    remarks.push_back(
+        fmt::format("The sensor's output has steps of {:.3g} {}, {:.1f} times what changes from sample to sample: the white "
+                    "noise told here is "
+                    "what the rounding leaves of it. A smaller measuring range, or raw output without the device's own filter, "
+                    "shows the sensor's.",
+                    resolution.step, sensor == Sensor::kGyro ? "rad/s" : "m/s^2", resolution.step / resolution.scatter));
+    return;
+  }
+}
+
 }  // namespace
 
 AxisCalibration calibrate(const std::vector<StaticSignal>& given, const CalibrationOptions& options) {
@@ -145,6 +175,7 @@ AxisCalibration calibrate(const std::vector<StaticSignal>& given, const Calibrat
   result.remarks = remarks_of(best.model, result.parameters, covariance, duration);
   for (const ProcessPtr& process : best.model.processes(best.fit.u, {options.sensor, records.front().interval}))
     if (const std::string words = process->in_words(); !words.empty()) result.remarks.push_back(words + ".");
+  remark_on_the_fit(given, best.fit, options.sensor, result.remarks);
   result.whiteness = whiteness_of(likelihood.standardised_innovations(best.fit.u, 0), static_cast<int>(best.fit.u.size()));
   result.own = fit_each(records, best);
   result.common_parameters_p = test_of_common_parameters(result.own, best);

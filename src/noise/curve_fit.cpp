@@ -85,6 +85,7 @@ NonNegative non_negative_fit(const Eigen::MatrixXd& A, const Eigen::VectorXd& b)
     best.x = Eigen::VectorXd::Zero(n);
     best.x(in) = x;
   }
+  if (best.x.size() == 0) best.x = Eigen::VectorXd::Zero(n);  // a curve of zeros, or of no points: no column helps
   best.x = best.x.cwiseQuotient(norms);
   return best;
 }
@@ -100,6 +101,7 @@ class RateGrid {
   std::vector<double> best() {
     std::vector<double> u(model_.parameters());
     for (std::size_t i = 0; i < u.size(); ++i) u[i] = ranges_[i].lower;
+    best_ = u;
     if (combinations() <= kTogether) {
       vary(0, 0, u);
       return best_;

@@ -80,6 +80,31 @@ TEST(Calibration, OutliersThatDoNotMatterAreKept) {
   EXPECT_TRUE(calibrate({record}, options).outliers.at(0).excluded);
 }
 
+bool names_steps(const AxisCalibration& result) {
+  return std::ranges::any_of(result.remarks,
+                             [](const std::string& r) { return r.find("steps of 1 rad/s") != std::string::npos; });
+}
+
+// Steps that are small beside the noise are no word worth.
+TEST(Calibration, FineStepsAreNotNamed) {
+  StaticSignal record = realisation(SumModel({&estimable("white_noise")}, Mean::kLevel), logs({1.0}), 1.0, 3000, 3);
+  for (double& y : record.values) y = std::round(y);
+  EXPECT_FALSE(names_steps(calibrate({record}, {.realisations = 0})));
+}
+
+// Steps of five sigma: one sample in eighty is a step off, and the innovations of all others are nothing. It crashed where
+// these were left out as outliers and a constant was left.
+TEST(Calibration, StepsOfSeveralSigmaAreNoOutliers) {
+  StaticSignal record = realisation(SumModel({&estimable("white_noise")}, Mean::kLevel), logs({0.04}), 1.0, 3000, 3);
+  for (double& y : record.values) y = std::round(y);
+  for (const Outliers what : {Outliers::kWhereTheyMatter, Outliers::kExclude}) {
+    const AxisCalibration result = calibrate({record}, {.outliers = what, .realisations = 0});
+    EXPECT_EQ(std::ranges::count_if(result.outliers, &Outlier::excluded), 0);
+    EXPECT_GT(result.parameters.at(0).value, 0.0);
+    EXPECT_TRUE(names_steps(result));
+  }
+}
+
 TEST(Calibration, RecordsOfOneSensorShareTheirParametersAndOthersDoNot) {
   const CalibrationOptions options{.processes = {"white_noise", "gauss_markov"}, .realisations = 0};
   const AxisCalibration same = calibrate({drifting(7), drifting(8), drifting(9)}, options);

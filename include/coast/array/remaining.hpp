@@ -23,7 +23,8 @@ struct RemainingErrors {
 /// @note what all sensors have in common (a temperature's effect on sensors of one kind) no difference shows
 /// @param signals  with their offsets, 2 sensors or more; columns with a sensor missing are left out
 /// @param white_factor  variance of the merged white noise as a share of the plain mean's
-/// @throws std::invalid_argument  fewer than 2 sensors, or fewer than 50 averages
+/// @param average_s  halved until there are 50 averages, down to 0.1 s: of a short record the model says as much as it can
+/// @throws std::invalid_argument  fewer than 2 sensors, or fewer than 50 averages even so
 [[nodiscard]] RemainingErrors remaining_errors(const Signals& signals, int channel, double average_s, double white_factor);
 
 /// White noise as a navigation filter takes it.  @param density  [signal]^2/Hz

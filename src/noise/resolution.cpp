@@ -1,0 +1,44 @@
+#include "resolution.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace coast::noise {
+
+namespace {
+
+// The smallest distance between values that are not the same but for the rounding of their conversion.
+double step_of(std::vector<double> values) {
+  constexpr double kSame = 1e-6;  // of the range
+  constexpr double kMost = 0.1;   // values that differ, of all: more are no lattice that the record shows
+  std::ranges::sort(values);
+  const double same = kSame * (values.back() - values.front());
+  double least = 0.0;
+  std::size_t different = 1;
+  for (std::size_t i = 1; i < values.size(); ++i) {
+    const double distance = values[i] - values[i - 1];
+    if (!(distance > same)) continue;
+    ++different;
+    least = least > 0.0 ? std::min(least, distance) : distance;
+  }
+  return static_cast<double>(different) < kMost * static_cast<double>(values.size()) ? least : 0.0;
+}
+
+// Half the mean square of what changes from sample to sample: of white noise its variance, and slow errors do not count.
+double scatter_of(const StaticSignal& signal) {
+  double squares = 0.0;
+  std::size_t count = 0;
+  for (const StaticSignal::Run& run : signal.runs)
+    for (std::size_t i = run.first + 1; i < run.first + run.count; ++i, ++count)
+      squares += (signal.values[i] - signal.values[i - 1]) * (signal.values[i] - signal.values[i - 1]);
+  return count > 0 ? std::sqrt(0.5 * squares / static_cast<double>(count)) : 0.0;
+}
+
+}  // namespace
+
+Resolution resolution_of(const StaticSignal& signal) {
+  if (signal.values.empty()) return {};
+  return {step_of(signal.values), scatter_of(signal)};
+}
+
+}  // namespace coast::noise

@@ -1,0 +1,18 @@
+#pragma once
+// The step of a sensor's output against its noise; private to the room.
+
+#include "coast/noise/static_signal.hpp"
+
+namespace coast::noise {
+
+struct Resolution {
+  double step = 0.0;     ///< smallest distance between two values that occur; 0: too many values occur to tell
+  double scatter = 0.0;  ///< white noise from sample to sample, rounding included
+  /// Rounding adds step^2/12 to the variance up to a step of two sigma (Sheppard's correction; Widrow & Kollar 2008, ch. 4 and
+  /// 5); beyond it nobody knows by the variance what was rounded.
+  [[nodiscard]] bool hides_the_noise() const { return step > 2.0 * scatter; }
+};
+
+[[nodiscard]] Resolution resolution_of(const StaticSignal& signal);
+
+}  // namespace coast::noise
