@@ -92,7 +92,8 @@ RemainingErrors remaining_errors(const Signals& signals, int channel, double ave
   constexpr double kShortestAverage = 0.1;  // s: below it filters of the sensors show
   auto block = static_cast<std::size_t>(std::max(1.0, std::round(average_s / signals.dt)));
   std::vector<noise::StaticSignal> records = averaged_residuals(signals, channel, block);
-  while (records.front().values.size() < kFewestAverages && static_cast<double>(block / 2) * signals.dt >= kShortestAverage) {
+  const auto shortest = static_cast<std::size_t>(std::ceil(kShortestAverage / signals.dt));
+  while (records.front().values.size() < kFewestAverages && block / 2 >= shortest) {
     block /= 2;  // a short record, or one of which much was left out
     records = averaged_residuals(signals, channel, block);
   }

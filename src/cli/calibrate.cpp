@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 #include <tbb/parallel_for.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <mutex>
@@ -10,6 +11,7 @@
 #include "calibration_result.hpp"
 #include "coast/io/results_folder.hpp"
 #include "coast/io/writers.hpp"
+#include "coast/noise/rest.hpp"
 #include "coast/record/error.hpp"
 #include "coast/report/render.hpp"
 #include "commands.hpp"
@@ -23,6 +25,32 @@ namespace {
 ReadRecord summary_of(const noise::StaticRecording& recording) {
   const noise::StaticSignal& first = recording.axes.front();
   return {recording.source, first.duration(), first.length(), first.values.size(), first.runs.size() - 1, recording.remarks};
+}
+
+std::string stretches(const std::vector<noise::Rest::Stretch>& places, double begin) {
+  std::vector<std::string> words;
+  for (const noise::Rest::Stretch& place : places)
+    words.push_back(fmt::format("{:.0f} to {:.0f} s", begin + place.from, begin + place.to));
+  return fmt::format("{}", fmt::join(words, ", "));
+}
+
+// What is moved shows the motion and not the sensor. A touch of the table is told; outliers are dealt with behind this.
+void require_rest(noise::StaticRecording& recording, const CalibrationRecord& file) {
+  const noise::Rest rest = noise::rest_of(recording);
+  if (rest.moved == 0.0) return;
+  const double begin = file.part.from_s.value_or(0.0);
+  const std::string found = fmt::format("the IMU is moved in {:.0f} of {:.0f} s", rest.moved, rest.duration);
+  if (rest.at_rest()) {
+    recording.remarks.push_back(found + ".");
+    return;
+  }
+  if (rest.places.empty())
+    throw InputError({recording.source, 0, found + " and never at rest for a minute", "a recording at rest", ""});
+  const noise::Rest::Stretch& longest = *std::ranges::max_element(rest.places, {}, &noise::Rest::Stretch::length);
+  throw InputError(
+      {recording.source, 0, fmt::format("{}; at rest from {}", found, stretches(rest.places, begin)), "a recording at rest",
+       fmt::format("In calibration.yaml: `records: [{{file: {}, from_s: {:.0f}, to_s: {:.0f}}}]` takes the longest rest.",
+                   recording.source, std::ceil(begin + longest.from), std::floor(begin + longest.to))});
 }
 
 // Reads one recording after the other, so that the raw samples of one only are in memory: those to estimate from, then those to
@@ -41,6 +69,7 @@ std::vector<noise::StaticRecording> read_records(const CalibrationConfig& config
       if (event.kind != "imu_gap")
         result.events.push_back(event);  // no gap is bridged here: the remarks say what becomes of it
     records.push_back(noise::static_recording(imu, file.part));
+    if (records.size() <= config.records.size()) require_rest(records.back(), file);
   }
   noise::share_interval(records);
   for (std::size_t i = 0; i < records.size(); ++i)

@@ -68,7 +68,8 @@ Arm arm_of(const ProcessPage& page) {
 }
 
 /// A misclosure that the run has taken into account spoils no result: one of an arm to be found is compared with its sigma
-/// as stated, one of an arm that the recording shows to be another is to be looked at.
+/// as stated, one of an arm that the recording shows to be another is to be looked at. It is bad where the run says that the
+/// recording contradicts the arm, and nowhere else: a red card beside a good verdict would be one too many.
 Verdict arm_verdict(const ProcessPage& page, double difference, double sd) {
   constexpr double kTolerance = 0.05;  // m
   constexpr double kSigmas = 3.0;
@@ -79,12 +80,13 @@ Verdict arm_verdict(const ProcessPage& page, double difference, double sd) {
     return std::abs(difference) > kSigmas * std::hypot(stated, sd) ? Verdict::kWarn : Verdict::kGood;
   }
   const bool significant = std::abs(difference) > kSigmas * sd;
-  if (large && significant) return arm == Arm::kFreed ? Verdict::kWarn : Verdict::kBad;
+  const bool contradicted =
+      std::ranges::find(page.result.events, "lever_arm_contradicted", &record::Event::kind) != page.result.events.end();
+  if (large && significant && arm == Arm::kTaken && contradicted) return Verdict::kBad;
   return large || significant ? Verdict::kWarn : Verdict::kGood;
 }
 
-/// A component counts where it is known to 10 cm. Good: all within 3 sigma and below 5 cm; bad: one of 5 cm or more
-/// beyond 3 sigma, i.e. the configured lever arm is refuted and used all the same.
+/// A component counts where it is known to 10 cm. Good: all within 3 sigma and below 5 cm.
 std::optional<Tile> lever_arm_tile(const ProcessPage& page) {
   if (!page.result.lever_arm) return std::nullopt;
   constexpr double kObservable = 0.10;  // m, one sigma

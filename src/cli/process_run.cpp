@@ -223,7 +223,7 @@ void ProcessRun::offer_gnss_noise() {
       {record::Event::Severity::kWarning, "gnss_sigmas_do_not_fit",
        fmt::format(
            "Innovations are {:.2g} times their sigma. The first {:.0f} s are likeliest with the GNSS sigmas times {:.2g} "
-           "horizontally and {:.2g} vertically, and errors of {:.2g} and {:.2g} m that last {:.2g} s beside them. Set "
+           "horizontally and {:.2g} vertically, and errors of {:.2g} and {:.2g} m that last {:.3g} s beside them. Set "
            "`gnss.noise: estimated` to have this fitted and used, `imu.noise: estimated` where the IMU shakes.",
            ratio, std::min(kWindow, result_.end - result_.start), scale.horizontal, scale.vertical, correlated.horizontal_m,
            correlated.vertical_m, correlated.time_s),

@@ -195,7 +195,7 @@ void PreparedMission::note_adaptations() {
        fmt::format(
            "Squared innovations are {:.2g} times what the stated noise predicts. Fitted and used in its place: gyro noise "
            "times {:.3g}, accelerometer noise times {:.3g}, GNSS sigmas times {:.3g} horizontally and {:.3g} vertically "
-           "with errors of {:.2g} and {:.2g} m that last {:.2g} s. `noise: stated` keeps what is stated.",
+           "with errors of {:.2g} and {:.2g} m that last {:.3g} s. `noise: stated` keeps what is stated.",
            *noise_ratio_, a.gyro_factor, a.accel_factor, a.gnss_scale.horizontal, a.gnss_scale.vertical,
            a.correlated_gnss.horizontal_m, a.correlated_gnss.vertical_m, a.correlated_gnss.time_s));
 }

@@ -327,8 +327,10 @@ TEST_F(PageTest, TilesJudgeByTheirStatedThresholds) {
     return tile(make(result), "Lever-arm misclosure")->verdict;
   };
   EXPECT_EQ(lever_arm({0.01, 0.0, 0.0}, {0.01, 0.01, 0.01}), report::Verdict::kGood);
-  EXPECT_EQ(lever_arm({0.04, 0.0, 0.0}, {0.01, 0.01, 0.01}), report::Verdict::kWarn);  // small, but 4 sigma
-  EXPECT_EQ(lever_arm({0.06, 0.0, 0.0}, {0.03, 0.01, 0.01}), report::Verdict::kWarn);  // large, but 2 sigma
+  EXPECT_EQ(lever_arm({0.04, 0.0, 0.0}, {0.01, 0.01, 0.01}), report::Verdict::kWarn);   // small, but 4 sigma
+  EXPECT_EQ(lever_arm({0.06, 0.0, 0.0}, {0.03, 0.01, 0.01}), report::Verdict::kWarn);   // large, but 2 sigma
+  EXPECT_EQ(lever_arm({0.00, 0.0, 0.06}, {0.01, 0.01, 0.01}), report::Verdict::kWarn);  // to be looked at, but no check failed
+  result.events.push_back({record::Event::Severity::kWarning, "lever_arm_contradicted", "it is elsewhere", std::nullopt, 1});
   EXPECT_EQ(lever_arm({0.00, 0.0, 0.3}, {0.01, 0.01, 0.01}), report::Verdict::kBad);
   EXPECT_EQ(lever_arm({0.00, 0.0, 0.3}, {0.01, 0.01, 0.40}), report::Verdict::kGood);  // down is not known: not judged
   EXPECT_EQ(lever_arm({0.30, 0.3, 0.3}, {0.40, 0.40, 0.40}), report::Verdict::kNone);
@@ -337,7 +339,7 @@ TEST_F(PageTest, TilesJudgeByTheirStatedThresholds) {
   EXPECT_EQ(lever_arm({0.00, 0.0, 0.5}, {0.01, 0.01, 0.01}), report::Verdict::kGood);
   EXPECT_EQ(lever_arm({0.00, 0.0, 1.0}, {0.01, 0.01, 0.01}), report::Verdict::kWarn);
 
-  EXPECT_EQ(tile(make(result), "Warnings")->value, "1");
+  EXPECT_EQ(tile(make(result), "Warnings")->value, "2");
   EXPECT_EQ(tile(make(result), "GNSS quality")->value, "70.0 / 30.0");
   EXPECT_EQ(tile(make(result), "GNSS quality")->verdict, report::Verdict::kWarn);
   // The worst of all outages is the last swept one: 10 s at 0.029 m/s.

@@ -1,0 +1,105 @@
+#include "coast/noise/rest.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "coast/geo/units.hpp"
+
+namespace coast::noise {
+
+namespace {
+
+constexpr double kWindow = 1.0;            // s
+constexpr double kLongEnough = 60.0;       // s
+constexpr std::size_t kBesideMotion = 2;   // windows; a hand comes and goes softly
+constexpr double kScatters = 8.0;          // of 1e6 changes of white noise none is that large
+constexpr double kBeyondWhiteNoise = 4.0;  // in the scatter of the means
+
+/// What no sensor's own errors do from one second to the next.
+struct Motion {
+  double least;       ///< change that may be motion
+  double throughout;  ///< scatter of changes that is motion
+};
+constexpr Motion kGyro{0.2 * geo::kDegree, 0.5 * geo::kDegree};
+constexpr Motion kAccelerometer{0.05, 0.15};
+
+/// Mean over each window, of what there is of it; nothing where half of it is missing.
+std::vector<double> window_means(const StaticSignal& signal, std::size_t length) {
+  const std::size_t windows = static_cast<std::size_t>(signal.length()) / length;
+  std::vector<double> sums(windows, 0.0);
+  std::vector<std::size_t> counts(windows, 0);
+  for (const StaticSignal::Run& run : signal.runs)
+    for (std::size_t i = 0; i < run.count; ++i) {
+      const auto window = static_cast<std::size_t>(run.start + i) / length;
+      if (window >= windows) break;
+      sums[window] += signal.values[run.first + i];
+      ++counts[window];
+    }
+  for (std::size_t w = 0; w < windows; ++w)
+    sums[w] = 2 * counts[w] >= length ? sums[w] / static_cast<double>(counts[w]) : std::numeric_limits<double>::quiet_NaN();
+  return sums;
+}
+
+/// Standard deviation by the lower quartile of sizes: half the changes may be of motion.
+double scatter_of_changes(std::vector<double> changes) {
+  constexpr double kQuartileOfSizes = 0.3186;  // sigmas, of a normal distribution
+  if (changes.empty()) return 0.0;
+  const auto quartile = changes.begin() + static_cast<std::ptrdiff_t>(changes.size() / 4);
+  std::ranges::nth_element(changes, quartile);
+  return *quartile / kQuartileOfSizes;
+}
+
+/// What white noise leaves in the change from one mean to the next: half the mean square of what changes from sample to sample
+/// is its variance.
+double change_of_white_noise(const StaticSignal& signal, std::size_t length) {
+  double squares = 0.0;
+  double count = 0.0;
+  for (const StaticSignal::Run& run : signal.runs)
+    for (std::size_t i = run.first + 1; i < run.first + run.count; ++i) {
+      squares += std::pow(signal.values[i] - signal.values[i - 1], 2);
+      count += 1.0;
+    }
+  return count > 0.0 ? std::sqrt(squares / count / static_cast<double>(length)) : 0.0;
+}
+
+/// Marks the windows between which an axis changes by more than it does by itself.
+void mark(const StaticSignal& signal, const Motion& motion, std::size_t length, std::vector<bool>& moved) {
+  const std::vector<double> means = window_means(signal, length);
+  std::vector<double> changes;
+  for (std::size_t w = 1; w < means.size(); ++w)
+    if (const double change = std::abs(means[w] - means[w - 1]); std::isfinite(change)) changes.push_back(change);
+  const double scatter = scatter_of_changes(changes);
+  const bool throughout = scatter > motion.throughout && scatter > kBeyondWhiteNoise * change_of_white_noise(signal, length);
+  const double limit = throughout ? motion.least : std::max(kScatters * scatter, motion.least);
+  for (std::size_t w = 1; w < means.size(); ++w) {
+    if (!(std::abs(means[w] - means[w - 1]) > limit)) continue;
+    moved[w - 1] = moved[w] = true;
+  }
+}
+
+}  // namespace
+
+Rest rest_of(const StaticRecording& recording) {
+  const StaticSignal& first = recording.axes.front();
+  const std::size_t length = std::max<std::size_t>(2, static_cast<std::size_t>(std::lround(kWindow / first.interval)));
+  const double window = static_cast<double>(length) * first.interval;
+  std::vector<bool> moved(static_cast<std::size_t>(first.length()) / length, false);
+  for (std::size_t axis = 0; axis < recording.axes.size(); ++axis)
+    mark(recording.axes[axis], axis < 3 ? kGyro : kAccelerometer, length, moved);
+
+  Rest rest{first.duration(), window * static_cast<double>(std::ranges::count(moved, true)), {}};
+  for (std::size_t begin = 0; begin < moved.size();) {
+    std::size_t end = begin;
+    while (end < moved.size() && !moved[end]) ++end;
+    // Beside a motion, not beside the recording's own ends.
+    const std::size_t from = begin > 0 ? begin + kBesideMotion : begin;
+    const std::size_t to = end < moved.size() ? end - std::min(end, kBesideMotion) : end;
+    if (to > from && static_cast<double>(to - from) * window >= kLongEnough)
+      rest.places.push_back({static_cast<double>(from) * window, static_cast<double>(to) * window});
+    begin = end + 1;
+  }
+  return rest;
+}
+
+}  // namespace coast::noise
