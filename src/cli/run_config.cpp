@@ -66,7 +66,8 @@ void read_imu_noise(const Node& imu, study::Setup& setup, estimate::NoiseFitChoi
     if (given.flag("without_gain_errors", false)) setup.model = study::without_gain_errors(setup.model, 0.0);
   });
   choice.imu_white_noise = key == NoiseKey::kEstimated;
-  setup.unstated.noise.imu_white_noise = key == NoiseKey::kAdapted || key == NoiseKey::kEstimated;  // drift and gain errors too
+  setup.unstated.noise.imu_white_noise =
+      key == NoiseKey::kAdapted || key == NoiseKey::kEstimated;  // drift of biases and gain errors
 }
 
 void read_gnss_noise(const Node& gnss, study::Setup& setup, estimate::NoiseFitChoice& choice) {

@@ -109,7 +109,9 @@ void bootstrap_intervals(const Likelihood& likelihood, const Fit& fit, const Cal
 void remark_on_the_fit(const std::vector<StaticSignal>& records, const Fit& fit, Sensor sensor,
                        std::vector<std::string>& remarks) {
   if (!fit.converged)
-    remarks.emplace_back("The fit did NOT CONVERGE: another sum of processes, or a longer record, is likelier to.");
+    remarks.emplace_back(
+        "The fit did NOT CONVERGE: its values are doubtful. A sum of fewer processes, or a longer record, is likelier to "
+        "converge.");
   for (const StaticSignal& record : records) {
     const Resolution resolution = resolution_of(record);
     if (!resolution.hides_the_noise()) continue;

@@ -24,8 +24,9 @@ double step_of(std::vector<double> values) {
   return static_cast<double>(different) < kMost * static_cast<double>(values.size()) ? least : 0.0;
 }
 
-// Half the mean square of what changes from sample to sample: of white noise its variance, and slow errors do not count.
-double scatter_of(const StaticSignal& signal) {
+}  // namespace
+
+double white_scatter(const StaticSignal& signal) {
   double squares = 0.0;
   std::size_t count = 0;
   for (const StaticSignal::Run& run : signal.runs)
@@ -34,11 +35,9 @@ double scatter_of(const StaticSignal& signal) {
   return count > 0 ? std::sqrt(0.5 * squares / static_cast<double>(count)) : 0.0;
 }
 
-}  // namespace
-
 Resolution resolution_of(const StaticSignal& signal) {
   if (signal.values.empty()) return {};
-  return {step_of(signal.values), scatter_of(signal)};
+  return {step_of(signal.values), white_scatter(signal)};
 }
 
 }  // namespace coast::noise

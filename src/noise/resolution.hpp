@@ -13,6 +13,9 @@ struct Resolution {
   [[nodiscard]] bool hides_the_noise() const { return step > 2.0 * scatter; }
 };
 
+/// Standard deviation of the white noise from sample to sample, by half the mean square of their changes: slow errors do not
+/// count.
+[[nodiscard]] double white_scatter(const StaticSignal& signal);
 [[nodiscard]] Resolution resolution_of(const StaticSignal& signal);
 
 }  // namespace coast::noise

@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "coast/geo/units.hpp"
+#include "resolution.hpp"
 
 namespace coast::noise {
 
@@ -14,6 +15,7 @@ constexpr double kWindow = 1.0;            // s
 constexpr double kLongEnough = 60.0;       // s
 constexpr std::size_t kBesideMotion = 2;   // windows; a hand comes and goes softly
 constexpr double kScatters = 8.0;          // of 1e6 changes of white noise none is that large
+constexpr double kOfWhiteNoise = 6.0;      // of 1e8 none; of coarse steps most changes are nothing, and so is their quantile
 constexpr double kBeyondWhiteNoise = 4.0;  // in the scatter of the means
 
 /// What no sensor's own errors do from one second to the next.
@@ -50,19 +52,6 @@ double scatter_of_changes(std::vector<double> changes) {
   return *quartile / kQuartileOfSizes;
 }
 
-/// What white noise leaves in the change from one mean to the next: half the mean square of what changes from sample to sample
-/// is its variance.
-double change_of_white_noise(const StaticSignal& signal, std::size_t length) {
-  double squares = 0.0;
-  double count = 0.0;
-  for (const StaticSignal::Run& run : signal.runs)
-    for (std::size_t i = run.first + 1; i < run.first + run.count; ++i) {
-      squares += std::pow(signal.values[i] - signal.values[i - 1], 2);
-      count += 1.0;
-    }
-  return count > 0.0 ? std::sqrt(squares / count / static_cast<double>(length)) : 0.0;
-}
-
 /// Marks the windows between which an axis changes by more than it does by itself.
 void mark(const StaticSignal& signal, const Motion& motion, std::size_t length, std::vector<bool>& moved) {
   const std::vector<double> means = window_means(signal, length);
@@ -70,8 +59,10 @@ void mark(const StaticSignal& signal, const Motion& motion, std::size_t length, 
   for (std::size_t w = 1; w < means.size(); ++w)
     if (const double change = std::abs(means[w] - means[w - 1]); std::isfinite(change)) changes.push_back(change);
   const double scatter = scatter_of_changes(changes);
-  const bool throughout = scatter > motion.throughout && scatter > kBeyondWhiteNoise * change_of_white_noise(signal, length);
-  const double limit = throughout ? motion.least : std::max(kScatters * scatter, motion.least);
+  const double of_white_noise = white_scatter(signal) * std::sqrt(2.0 / static_cast<double>(length));  // two means' difference
+  const bool throughout = scatter > motion.throughout && scatter > kBeyondWhiteNoise * of_white_noise;
+  double limit = throughout ? motion.least : std::max(kScatters * scatter, motion.least);
+  if (resolution_of(signal).hides_the_noise()) limit = std::max(limit, kOfWhiteNoise * of_white_noise);
   for (std::size_t w = 1; w < means.size(); ++w) {
     if (!(std::abs(means[w] - means[w - 1]) > limit)) continue;
     moved[w - 1] = moved[w] = true;

@@ -85,7 +85,7 @@ bool names_steps(const AxisCalibration& result) {
                              [](const std::string& r) { return r.find("steps of 1 rad/s") != std::string::npos; });
 }
 
-// Steps that are small beside the noise are no word worth.
+// Steps that are small beside the noise are not worth a word.
 TEST(Calibration, FineStepsAreNotNamed) {
   StaticSignal record = realisation(SumModel({&estimable("white_noise")}, Mean::kLevel), logs({1.0}), 1.0, 3000, 3);
   for (double& y : record.values) y = std::round(y);

@@ -46,6 +46,20 @@ TEST(RestTest, NoiseIsNoMotion) {
   }
 }
 
+// Steps of 0.05 rad/s and m/s^2, five times the noise: most means are alike, and those that are not jump.
+TEST(RestTest, CoarseStepsAreNoMotion) {
+  for (unsigned seed = 0; seed < 10; ++seed) {
+    StaticRecording coarse = moved_record(600.0, seed, 0.01, no_motion);
+    for (StaticSignal& signal : coarse.axes) {
+      std::vector<double> each_fifth;  // at 10 Hz
+      for (std::size_t i = 0; i < signal.values.size(); i += 5)
+        each_fifth.push_back(std::round(signal.values[i] / 0.05 + 0.3) * 0.05);
+      signal = StaticSignal::regular(std::move(each_fifth), 5.0 / kRestRate);
+    }
+    EXPECT_EQ(rest_of(coarse).moved, 0.0) << seed;
+  }
+}
+
 // Turned by hand to another pose between 200 and 210 s: by 20 deg/s, and gravity goes from z to x.
 TEST(RestTest, FindsTheStretchesBetweenTurns) {
   const auto turned = [](std::size_t axis, double t) {

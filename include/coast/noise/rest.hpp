@@ -25,8 +25,10 @@ struct Rest {
 /// Means of a second are compared with those before: what a sensor does by itself within a second is its white noise and little
 /// beside it, while a hand turns by degrees per second and a vehicle accelerates by decimetres per second squared. A second is
 /// moved where an axis changes by more than eight times its own scatter (a quantile of all changes, so that moved seconds do
-/// not count) and by more than 0.2 deg/s or 0.05 m/s^2. Where the scatter itself is far beyond what the samples' white noise
-/// leaves in a mean, and beyond 0.5 deg/s or 0.15 m/s^2, the recording is moved throughout.
+/// not count) and by more than 0.2 deg/s or 0.05 m/s^2; where the output has coarse steps, also by more than six times what
+/// white noise as large as theirs leaves in a mean. Where the scatter itself is far beyond what the samples' white noise leaves
+/// in a mean, and beyond 0.5 deg/s or 0.15 m/s^2, the recording is moved throughout. A steady drive without turns looks like
+/// rest.
 [[nodiscard]] Rest rest_of(const StaticRecording& recording);
 
 }  // namespace coast::noise
