@@ -2,9 +2,11 @@
 # find_package(coast) and pkg-config read.
 include(CMakePackageConfigHelpers)
 
-install(TARGETS coast_options EXPORT coast)
+install(TARGETS coast_options coast_eigen EXPORT coast)
 set_target_properties(coast_options PROPERTIES EXPORT_NAME options)
-foreach(room IN LISTS coast_rooms)
+set_target_properties(coast_eigen PROPERTIES EXPORT_NAME eigen)
+list(TRANSFORM coast_job_names PREPEND jobs_ OUTPUT_VARIABLE coast_job_rooms)
+foreach(room IN LISTS coast_rooms coast_job_rooms ITEMS jobs)
   install(TARGETS coast_${room} EXPORT coast)
   set_target_properties(coast_${room} PROPERTIES EXPORT_NAME ${room})
 endforeach()
@@ -21,8 +23,8 @@ write_basic_package_version_file(${CMAKE_BINARY_DIR}/coast-config-version.cmake 
 install(FILES ${CMAKE_BINARY_DIR}/coast-config.cmake ${CMAKE_BINARY_DIR}/coast-config-version.cmake DESTINATION ${coast_package})
 
 # The linker wants a room before those that it uses. cli is the program's.
-set(coast_libraries)
-foreach(room IN LISTS coast_rooms)
+set(coast_libraries "-lcoast_eigen ")
+foreach(room IN LISTS coast_rooms coast_job_rooms)
   string(PREPEND coast_libraries "-lcoast_${room} ")
 endforeach()
 file(RELATIVE_PATH coast_prefix /x/${CMAKE_INSTALL_LIBDIR}/pkgconfig /x)

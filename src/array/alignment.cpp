@@ -33,8 +33,8 @@ LagSamples rates_of(const SensorSignals& sensor, LagSignal of, Eigen::Index from
   return rates.transpose();
 }
 
-/// Centre of the motion that tells the lag, in samples: of the squared changes, as products of both sensors' so that noise
-/// falls out, over a quarter of a period.
+/// Centre of the motion that determines the lag, in samples: weighted by squared changes, as products of both sensors' changes
+/// so that noise cancels, over a quarter of a period.
 double centre_of_motion(const LagSamples& a, const LagSamples& b, double omega) {
   const double quarter = 0.5 * M_PI / std::max(omega, 1e-6);
   const Eigen::Index step = std::clamp<Eigen::Index>(std::lround(quarter), 1, a.rows() / 10);
@@ -48,7 +48,7 @@ double centre_of_motion(const LagSamples& a, const LagSamples& b, double omega) 
   return sum > 0.0 ? std::clamp(moment / sum, 0.0, last) : 0.5 * last;
 }
 
-/// Moves the sensor's window by whole samples until less than one is left.
+/// Moves the sensor's window by integer samples until less than one is left.
 struct Search {
   Eigen::Index moved = 0;
   FineLag fine;

@@ -14,9 +14,9 @@ namespace coast::array {
 
 namespace {
 
-constexpr double kShortestInCommon = 20.0;  // s in common, that tests of defects need
+constexpr double kShortestInCommon = 20.0;  // s of common time, required by the tests of defects
 
-/// The time that all recordings have in common.
+/// The time common to all recordings.
 Grid common_grid(const std::vector<ArrayMember>& members, double rate_hz) {
   Grid grid;
   const record::ImuRecording& first = *members.front().recording;
@@ -48,9 +48,9 @@ Signals on_grid(const std::vector<ArrayMember>& members, const Grid& grid, const
   return signals;
 }
 
-/// The stretch in which every recording has samples within the reach of resampling: its ends are no dropouts.
+/// The stretch in which every recording has samples within the length of resampling: its ends are no dropouts.
 void crop_ends(Signals& signals) {
-  constexpr double kMost = 2.0;  // s, at either end: what is missing for longer is a dropout
+  constexpr double kMost = 2.0;  // s, at either end: if more is missing, it is a dropout
   const auto whole = [&](std::size_t n) {
     return std::ranges::all_of(signals.sensors, [n](const SensorSignals& sensor) { return sensor.usable[n] == kAllUsable; });
   };
@@ -72,14 +72,14 @@ void say(record::Events& events, record::Event::Severity severity, const char* k
   events.push_back({severity, kind, std::move(text), std::nullopt, 1});
 }
 
-/// Lags of all members against the first, in body axes as stated.
+/// Lags of all members relative to the first, in body axes as stated.
 std::vector<std::optional<LagCurve>> find_lags(Signals signals, const std::vector<SensorFrame>& frames,
                                                const LagOptions& options, record::Events& events) {
   turn_to_body(signals, frames);
   std::vector<std::optional<LagCurve>> lags(frames.size());
   tbb::parallel_for(std::size_t{1}, frames.size(), [&](std::size_t k) {
     lags[k] = lag_curve(signals.sensors.front(), signals.sensors[k], signals.dt, options);
-    // One window knows no drift.
+    // One window cannot determine the drift.
     if (lags[k] && !std::isfinite(lags[k]->drift_sigma_ppm)) lags[k]->drift_ppm = 0.0;
   });
   for (std::size_t k = 1; k < frames.size(); ++k)
@@ -90,8 +90,8 @@ std::vector<std::optional<LagCurve>> find_lags(Signals signals, const std::vecto
   return lags;
 }
 
-/// What is left after lags were taken out, on top of these: where a clock drifts, a window's lag is that of the motion in it,
-/// and where in the window that was is known the better the less it drifts.
+/// Adds the lags that remain after correction: if a clock drifts, a window's lag is that of the motion in it, and the time of
+/// this motion in the window is known better the smaller the drift.
 void add_remaining(std::vector<std::optional<LagCurve>>& lags, const std::vector<std::optional<LagCurve>>& left) {
   for (std::size_t k = 0; k < lags.size(); ++k) {
     if (!lags[k] || !left[k]) continue;
@@ -121,7 +121,39 @@ void refine_frames(const Signals& sensor_axes, const AssemblyOptions& options, A
   for (std::size_t k = 0; k < assembly.frames.size(); ++k) assembly.frames[k] = assembly.mounting->sensors[k].frame;
 }
 
-/// After a jump of its bias a sensor is of use again, with the bias that it had in its first stretch in order.
+/// Also corrects the lags that remain with these frames.
+void match_again(const std::vector<ArrayMember>& members, const Grid& grid, const LagOptions& options, Assembly& assembly) {
+  record::Events said_already;
+  add_remaining(assembly.lags, find_lags(assembly.signals, assembly.frames, options, said_already));
+  assembly.signals = on_grid(members, grid, assembly.lags);
+}
+
+/// Synchronised signals, in their own axes, with refined frames. Times are matched in body axes: an error of the attitude mixes
+/// the axes and moves the maximum of the correlation by 20 us per degree and more. So they are matched again with the refined
+/// frames, and the frames are refined again with these times, starting from the stated ones.
+void match_and_mount(const std::vector<ArrayMember>& members, const Grid& grid, const AssemblyOptions& options,
+                     const std::function<void(const char*, double)>& tell, Assembly& assembly) {
+  tell("resampling", 0.0);
+  assembly.signals = on_grid(members, grid, {});
+  if (options.lags) {
+    tell("matching times", 0.1);
+    assembly.lags = find_lags(assembly.signals, assembly.frames, *options.lags, assembly.events);
+    assembly.signals = on_grid(members, grid, assembly.lags);
+    match_again(members, grid, *options.lags, assembly);
+  }
+  crop_ends(assembly.signals);
+  tell("refining the mounting", 0.3);
+  refine_frames(assembly.signals, options, assembly);
+  if (!options.lags || !assembly.mounting) return;
+  assembly.signals = on_grid(members, grid, assembly.lags);
+  match_again(members, grid, *options.lags, assembly);
+  crop_ends(assembly.signals);
+  tell("refining the mounting", 0.45);
+  assembly.frames = stated_frames(members);
+  refine_frames(assembly.signals, options, assembly);
+}
+
+/// After a jump of its bias a sensor is used again, with the bias of its first stretch in order.
 void undo_bias_jumps(Signals& signals, const std::vector<BiasRun>& runs) {
   for (std::size_t i = 0; i < runs.size(); ++i) {
     const auto first = std::ranges::find(runs, runs[i].sensor, &BiasRun::sensor);
@@ -144,19 +176,7 @@ Assembly assemble(const std::vector<ArrayMember>& members, const AssemblyOptions
   Assembly assembly;
   assembly.frames = stated_frames(members);
   const Grid grid = common_grid(members, options.rate_hz);
-  tell("resampling", 0.0);
-  assembly.signals = on_grid(members, grid, {});
-  if (options.lags) {
-    tell("matching times", 0.2);
-    assembly.lags = find_lags(assembly.signals, assembly.frames, *options.lags, assembly.events);
-    assembly.signals = on_grid(members, grid, assembly.lags);
-    record::Events said_already;
-    add_remaining(assembly.lags, find_lags(assembly.signals, assembly.frames, *options.lags, said_already));
-    assembly.signals = on_grid(members, grid, assembly.lags);
-  }
-  crop_ends(assembly.signals);
-  tell("refining the mounting", 0.4);
-  refine_frames(assembly.signals, options, assembly);
+  match_and_mount(members, grid, options, tell, assembly);
   turn_to_body(assembly.signals, assembly.frames);
   const AngularMotion motion = angular_motion(assembly.signals);
   assembly.differentiator_half_width = motion.half_width;

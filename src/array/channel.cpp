@@ -12,7 +12,7 @@ namespace coast::array {
 
 namespace {
 
-/// Sample blocks of about the same length that cover all samples.
+/// Sample blocks of about equal length that cover all samples.
 struct Blocking {
   std::size_t length = 1;
   std::size_t count = 1;
@@ -26,14 +26,14 @@ struct Blocking {
   [[nodiscard]] std::size_t end(std::size_t block) const { return block + 1 == count ? samples : (block + 1) * length; }
 };
 
-/// Of one block; a sensor that is nowhere in it has no offset.
+/// For one block; a sensor without samples in it has no offset.
 struct BlockOffsets {
   Eigen::VectorXd offset;
   Eigen::Array<bool, Eigen::Dynamic, 1> present;
 };
 
-/// Offsets of the sensors about their mean in one block, by least squares: z_k[n] = common[n] + b_k, sum b_k = 0. Sensors come
-/// and go, so the mean of those that are there is corrected for whose bias it contains, until nothing moves.
+/// Offsets of the sensors about their mean in one block, by least squares: z_k[n] = common[n] + b_k, sum b_k = 0. Availability
+/// varies, so the mean of the available sensors is corrected for their mean bias, iterated to convergence.
 BlockOffsets offsets_in_block(const Signals& signals, int channel, std::size_t from, std::size_t to) {
   constexpr int kSweeps = 6;
   const std::size_t sensors = signals.sensors.size();
@@ -68,9 +68,9 @@ BlockOffsets offsets_in_block(const Signals& signals, int channel, std::size_t f
   return block;
 }
 
-/// A sensor that is nowhere in a block has there what it had in a neighbouring one against those that are in this block: the
-/// level that all are brought to stays that of all sensors while one is out. Where no two are there at once, all is as in the
-/// neighbour.
+/// A sensor without samples in a block has the offset of a neighbouring block, relative to the sensors in this block: the level
+/// of the corrected signals remains that of all sensors while one is missing. A block in which no two are available at once
+/// has the offsets of the neighbour.
 void fill_from(const BlockOffsets& neighbour, BlockOffsets& block) {
   if (block.present.all()) return;
   if (!block.present.any()) {
@@ -88,7 +88,7 @@ void fill_from(const BlockOffsets& neighbour, BlockOffsets& block) {
   block.offset.array() -= block.offset.mean();
 }
 
-/// Straight lines between the middles of the blocks, constant before the first and after the last.
+/// Linear between the middles of the blocks, constant before the first and after the last.
 double between_blocks(const Eigen::Ref<const Eigen::RowVectorXd>& at_middles, double block) {
   const Eigen::Index last = at_middles.size() - 1;
   if (block <= 0.0) return at_middles(0);
@@ -98,7 +98,7 @@ double between_blocks(const Eigen::Ref<const Eigen::RowVectorXd>& at_middles, do
   return (1.0 - share) * at_middles(left) + share * at_middles(left + 1);
 }
 
-/// Residual variances of one block about their own mean, and who has enough samples.
+/// Residual variances of one block about their own mean, and which sensors have enough samples.
 struct BlockVariances {
   std::vector<std::size_t> sensors;
   std::vector<double> variances;

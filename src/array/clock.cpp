@@ -31,7 +31,7 @@ struct SyncPulse {
   double time_s;
 };
 
-/// Pulses that lie within half an interval of where their neighbour has them. The first pair that agrees is believed.
+/// Pulses within half an interval of the time predicted from their neighbour. The first pair that agrees is trusted.
 std::vector<SyncPulse> pulses_in_place(const std::vector<SyncPulse>& all, double interval_s) {
   const auto agree = [&](const SyncPulse& a, const SyncPulse& b) {
     const double device = b.device_s - a.device_s;
@@ -68,7 +68,7 @@ double ClockCurve::device(double time_s) const {
   const std::size_t k = clock_piece(knots_, time_s, [](const Knot& knot) { return knot.device_s + knot.ahead_s; });
   const Knot &a = knots_[k], &b = knots_[k + 1];
   const double slope = (b.ahead_s - a.ahead_s) / (b.device_s - a.device_s);
-  // time = d + a + s (d - d_a): the correction is small beside d, and is formed on its own so that no digit of d is lost.
+  // time = d + a + s (d - d_a): the correction is small compared with d and computed separately, so that no digit of d is lost.
   return time_s - (a.ahead_s + slope * (time_s - a.ahead_s - a.device_s) / (1.0 + slope));
 }
 

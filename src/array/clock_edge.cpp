@@ -1,4 +1,4 @@
-// The lower edge of arrival - device over device: the clock without the delays.
+// The lower edge of arrival - device as function of device: the clock without the delays.
 #include "clock_edge.hpp"
 
 #include <fmt/format.h>
@@ -38,19 +38,19 @@ void validate_clock(const std::vector<double>& device_s, const std::vector<doubl
   }
 }
 
-/// The packets of one clock, and how they are cut into blocks.
+/// The packets of one clock, divided into blocks.
 class LowerEdge {
  public:
   LowerEdge(const std::vector<double>& device_s, const std::vector<double>& arrival_s, const ClockOptions& options)
       : device_(device_s), arrival_(arrival_s), options_(options) {
     const double span = device_s.back() - device_s.front();
-    // Eight blocks of a short record, but each of packets enough for a quantile.
+    // Eight blocks of a short record, but each with enough packets for a quantile.
     const double shortest = span * static_cast<double>(kFewestInBlock) / static_cast<double>(device_s.size() - 1);
     block_s_ = std::max(std::min(options.block_s, span / 8.0), 1.0001 * shortest);
   }
 
-  /// One point for every block: its quantile of what is above `curve`, put back on `curve`. Drift within a block would smear
-  /// the quantile, so `curve` is the clock as far as it is known.
+  /// One point per block: its quantile of the values above `curve`, added to `curve`. Drift within a block would smear
+  /// the quantile, so `curve` is the best known clock.
   template <class Curve>
   [[nodiscard]] std::vector<LinePoint> points(const Curve& curve) const {
     std::vector<LinePoint> points;
@@ -79,7 +79,7 @@ class LowerEdge {
     return late;
   }
 
-  /// At blocks, as far apart as asked for; the last piece is between a half and one and a half of that.
+  /// At blocks, spaced as requested; the last piece is between 0.5 and 1.5 times as long.
   [[nodiscard]] std::vector<double> knots(const std::vector<LinePoint>& points) const {
     std::vector<double> knots{points.front().x};
     for (const LinePoint& point : points)
@@ -123,7 +123,7 @@ void describe_clock(const RobustLine& line, std::vector<double> residuals, Clock
 }
 
 ClockFit fit_clock(const std::vector<double>& device_s, const std::vector<double>& arrival_s, const ClockOptions& options) {
-  constexpr int kPasses = 3;  // the drift that smeared the blocks of one pass is known in the next
+  constexpr int kPasses = 3;  // the drift that smeared the blocks of one pass is corrected in the next
   validate_clock(device_s, arrival_s, options);
   const LowerEdge edge(device_s, arrival_s, options);
   const double span = device_s.back() - device_s.front();

@@ -1,5 +1,5 @@
 #pragma once
-// What fits of clocks share. Private to the room.
+// Shared by the fits of clocks. Private to the room.
 
 #include <vector>
 
@@ -8,7 +8,7 @@
 
 namespace coast::array {
 
-/// Fills offset, drift and residual statistics from the line through the clock.
+/// Sets offset, drift and residual statistics from the line through the clock.
 void describe_clock(const RobustLine& line, std::vector<double> residuals, ClockFit& fit);
 
 }  // namespace coast::array

@@ -6,7 +6,7 @@ namespace coast::array {
 
 namespace {
 
-/// A run with the channels that are in order in it, in whole blocks.
+/// A run with its channels in order, in whole blocks.
 struct RunInOrder {
   BiasRun run;
   std::uint8_t channels = 0;
@@ -34,14 +34,14 @@ std::vector<RunInOrder> runs_in_order(const ParityBlocks& blocks, const std::vec
   return runs;
 }
 
-template <class Use>  // use(block) where the run has the channel in order
+template <class Use>  // use(block) if the run has the channel in order
 void for_each_block(const ParityBlocks& blocks, const RunInOrder& run, int channel, const Use& use) {
   if (((run.channels >> channel) & 1) == 0) return;
   for (std::size_t b = run.first; b < run.end; ++b)
     if (blocks.has(run.run.sensor, channel, b)) use(static_cast<Eigen::Index>(b));
 }
 
-/// Each round leaves at most half of what was wrong, with two sensors; a quarter with four.
+/// Each iteration leaves at most half of the error with two sensors, a quarter with four.
 void solve_channel(const ParityBlocks& blocks, std::vector<RunInOrder>& runs, int channel) {
   constexpr int kRounds = 12;
   Eigen::VectorXd common = blocks.common.row(channel);

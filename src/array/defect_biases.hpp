@@ -6,8 +6,8 @@
 
 namespace coast::array {
 
-/// Least squares of block means = common signal of the block + bias of the sensor's run, over the runs in order, by alternating
-/// between both. A sensor's run ends where one of its channels goes out of order or comes back.
+/// Least squares of block means = common signal of the block + bias of the sensor's run, over the runs in order, alternating
+/// between both. A sensor's run ends where one of its channels becomes defective or recovers.
 [[nodiscard]] std::vector<BiasRun> piecewise_biases(const ParityBlocks& blocks, const std::vector<Defect>& defects,
                                                     std::size_t samples);
 

@@ -12,10 +12,10 @@ struct KindSpan {
   std::size_t from, to;
 };
 
-/// Of one channel: how much likelier than noise alone each kind makes its residual.
+/// For one channel: how much likelier than noise alone its residual is with each kind.
 struct KindScores {
-  double jump = 0.0, scale = 0.0, swap = 0.0;  ///< log-likelihood ratios, all with a variance of their own, at least the usual
-  double left = 0.0;                           ///< variance that the best of them leaves, over the usual one
+  double jump = 0.0, scale = 0.0, swap = 0.0;  ///< log-likelihood ratios, each with its own variance, at least the usual one
+  double left = 0.0;                           ///< remaining variance with the best of them, over the usual one
   double without = 0.0;                        ///< the same without any of them
   double within_blocks = 0.0;                  ///< of samples about their blocks' means
   double samples = 0.0;
@@ -39,8 +39,8 @@ class KindTest {
 
  private:
   struct Data {
-    std::vector<double> residual;               ///< against the others, without the bias before
-    double bias = 0.0;                          ///< that one
+    std::vector<double> residual;               ///< relative to the others, without the bias before
+    double bias = 0.0;                          ///< the bias before
     std::vector<std::array<double, 3>> others;  ///< of the channel's group
     std::vector<std::size_t> columns;
   };
@@ -65,7 +65,7 @@ bool KindTest::others_at(int channel, std::size_t n, double& value) const {
   return !values.empty();
 }
 
-/// Over the five seconds before, where there is one; else of the record.
+/// Over the five seconds before, if there are any; else over the record.
 double KindTest::bias_before(int channel, std::size_t from) const {
   const auto second = static_cast<std::size_t>(std::ceil(1.0 / signals_.dt));
   double sum = 0.0, other = 0.0;
@@ -133,7 +133,7 @@ KindScores KindTest::of(int channel, KindSpan span) const {
     ee += r * r;
     et += r * t;
     tt += t * t;
-    for (std::size_t axis = 0; axis < 3; ++axis) {  // a swapped axis has its own bias with it
+    for (std::size_t axis = 0; axis < 3; ++axis) {  // a swapped axis has its own bias too
       const double there = data.others[i].at(axis) + blocks_.bias[sensor_](channel / 3 * 3 + static_cast<int>(axis));
       as_axis.at(axis)[0] += std::pow(r + t + data.bias - there, 2);
       as_axis.at(axis)[1] += std::pow(r + t + data.bias + there, 2);
@@ -143,7 +143,7 @@ KindScores KindTest::of(int channel, KindSpan span) const {
   scores.factor = 1.0 + (tt > 0.0 ? et / tt : 0.0);
   const double left_by_jump = (ee - e * e / n) / n / variance;
   const double left_by_scale = (ee - (tt > 0.0 ? et * et / tt : 0.0)) / n / variance;
-  double left_by_swap = as_axis.at(own)[1];  // a sign turned counts as a swapped axis
+  double left_by_swap = as_axis.at(own)[1];  // a changed sign counts as a swapped axis
   for (std::size_t axis = 0; axis < 3; ++axis)
     if (axis != own) left_by_swap = std::min({left_by_swap, as_axis.at(axis)[0], as_axis.at(axis)[1]});
   left_by_swap /= n * variance;
@@ -163,9 +163,9 @@ KindScores KindTest::of(int channel, KindSpan span) const {
 void name_defect(const Signals& signals, const std::vector<std::vector<std::uint8_t>>& present, const ParityBlocks& blocks,
                  const std::vector<Channels>& noise, std::size_t recovery, Defect& defect) {
   constexpr double kNotExplained = 3.0;  // times the usual variance, and
-  constexpr double kShareLeft = 0.3;     // of what there was
+  constexpr double kShareLeft = 0.3;     // of the original variance
   const auto longest = static_cast<std::size_t>(30.0 / signals.dt);
-  // A jump is over where its new level is known: what follows tells it from the rest.
+  // A jump ends where its new level is known: only the samples after it identify it.
   std::size_t to = defect.to - defect.from < recovery ? defect.to + recovery : defect.to;
   to = std::min({to, signals.samples(), defect.from + longest});
   const KindTest test(signals, present, blocks, noise, defect.sensor);
@@ -179,7 +179,7 @@ void name_defect(const Signals& signals, const std::vector<std::vector<std::uint
     sum.samples += one.samples;
     if (clearest.samples == 0.0 || one.most() > clearest.most()) clearest = one;
   }
-  // Noise that is not white favours a constant by a few units; one percent of a variance is nothing to go by.
+  // Noise that is not white favours a constant by a few units; one percent of a variance is not significant.
   const bool by_chance = sum.most() < 10.0 + 0.005 * sum.samples;
   const bool left_over = clearest.left > kNotExplained && clearest.left > kShareLeft * clearest.without;
   defect.size.reset();

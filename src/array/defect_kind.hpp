@@ -1,14 +1,14 @@
 #pragma once
-// What is wrong with a sensor, once it is known that something is. Private to the room.
+// Classifies a detected defect of a sensor. Private to the room.
 
 #include "coast/array/defects.hpp"
 #include "parity_blocks.hpp"
 
 namespace coast::array {
 
-/// Fills kind and size: the likeliest of a constant, a factor, another axis and more noise in the samples of [from, to) (and of
-/// a recovery after it where that is short) against the median of the other sensors. kUnknown where the residual keeps three
-/// times the usual variance under each of them and is not white.
+/// Sets kind and size: the likeliest of a constant, a factor, another axis and more noise in the samples of [from, to) (and, if
+/// these are few, of a recovery after it) relative to the median of the other sensors. kUnknown if the residual's variance is
+/// above three times the usual one under each of them and the residual is not white.
 /// @param noise     variances of a sample, [sensor]
 /// @param recovery  columns
 void name_defect(const Signals& signals, const std::vector<std::vector<std::uint8_t>>& present, const ParityBlocks& blocks,

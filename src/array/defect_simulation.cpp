@@ -14,7 +14,7 @@ namespace {
 
 using SixSignals = Eigen::Matrix<double, kChannels, Eigen::Dynamic>;
 
-/// Three sines per channel under an envelope that is the platform's own: at rest for a part of the time.
+/// Three sines per channel with an envelope common to the platform: part of the time it is at rest.
 SixSignals common_motion(const ArraySimulation& simulation, Eigen::Index samples, std::mt19937_64& random) {
   const auto draw = [&](double from, double to) { return std::uniform_real_distribution<double>(from, to)(random); };
   const double two_pi = 2.0 * std::numbers::pi;

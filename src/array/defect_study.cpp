@@ -106,7 +106,7 @@ std::vector<DefectStudyRow> rows_of(const DefectStudyOptions& options, const Stu
                                     std::uint64_t first_seed, const std::function<void()>& done) {
   std::vector<InjectionResult> results(injections);
   tbb::parallel_for(std::size_t{0}, injections, [&](std::size_t i) {
-    // Kinds have the same records, but each injection a place of its own.
+    // Kinds use the same records, but each injection has its own place.
     std::mt19937_64 random((first_seed + i) * 16 + static_cast<std::uint64_t>(kind.kind));
     Signals signals = simulate_array(options.simulation, first_seed + i);
     const Injection injection =
@@ -131,7 +131,7 @@ DefectStudyResult run_defect_study(const DefectStudyOptions& options, std::size_
   DefectStudyResult result;
   const std::vector<StudiedKind> kinds = studied_kinds();
   const auto pieces = static_cast<std::size_t>(std::ceil(options.clean_hours * 3600.0 / options.clean_piece_s));
-  // A clean piece takes as long as several injections.
+  // A clean piece takes as much time as several injections.
   const double weight = options.clean_piece_s / options.simulation.duration_s;
   const double all = static_cast<double>(kinds.size() * injections_per_kind) + weight * static_cast<double>(pieces);
   std::atomic<std::size_t> injected = 0, cleaned = 0;

@@ -29,7 +29,7 @@ void DefectWatch::run() {
     if (trials_[k]) alarms_[trials_[k]->alarm].back = blocks_;
 }
 
-/// A level that is left takes the past with it: what follows one jump is in order again.
+/// Learning pass. The level follows a jump: after it the sensor is in order again.
 void DefectWatch::learn() {
   const ChannelWindows::Set all(windows_.sensors(), true);
   for (std::size_t b = 0; b < blocks_; ++b) {
@@ -51,7 +51,7 @@ ChannelWindows::Set DefectWatch::there(std::size_t b) const {
   return set;
 }
 
-/// Largest first, and again without it, while there are three to say who it is.
+/// Excludes the sensor with the largest test, then repeats without it, while there are three sensors to identify it.
 void DefectWatch::step(std::size_t b) {
   for (;;) {
     const ChannelWindows::Set set = there(b);
@@ -96,7 +96,7 @@ void DefectWatch::leave(std::size_t k, std::size_t b, const TestValue& test) {
     trial.needs_power = windows_.power(b > kBefore ? b - kBefore : 0, b);
   trials_[k] = trial;
   alarms_.push_back(alarm);
-  // The windows of the others hold residuals against the one that left.
+  // The windows of the others contain residuals relative to the one that was excluded.
   std::fill(windows_from_.begin(), windows_from_.end(), b + 1);
 }
 
@@ -114,8 +114,8 @@ void DefectWatch::contradict(const ChannelWindows::Set& set, std::size_t b, cons
   in_order_from_[record.b] = b + 1;
 }
 
-/// In order for long enough: back, from the beginning of that time. What was wrong in motion and is at its old level in less of
-/// it may still be wrong: it waits for motion. At a new level it was the level that was wrong.
+/// After enough blocks in order: used again, from the beginning of that time. A sensor found in motion that is at its old level
+/// with less motion may still be defective: it waits for motion. At a new level the defect was the level.
 void DefectWatch::follow_trial(std::size_t k, std::size_t b) {
   Trial& trial = *trials_[k];
   if (!windows_.has(k, b) || windows_.residual_variance(k, b) == 0.0 ||
@@ -153,7 +153,7 @@ double DefectWatch::jump_score(std::size_t k, std::size_t from, std::size_t b) c
   return weights > 0.0 ? sum * sum / weights / 2.0 : 0.0;
 }
 
-/// The same of a larger variance.
+/// Likewise for a larger variance.
 double DefectWatch::burst_score(std::size_t k, std::size_t from, std::size_t b, bool of_samples) const {
   double sum = 0.0, count = 0.0;
   for (std::size_t i = from; i <= b; ++i) {
@@ -167,7 +167,7 @@ double DefectWatch::burst_score(std::size_t k, std::size_t from, std::size_t b, 
   return count * (of_samples ? windows_.dof(k) : 1.0) / 2.0 * (ratio - 1.0 - std::log(ratio));
 }
 
-/// The likeliest start within two windows before it was found.
+/// The likeliest start within two windows before the detection.
 std::size_t DefectWatch::onset_of(std::size_t k, std::size_t b, const TestValue& test) const {
   constexpr std::size_t kMargin = 10;
   const std::size_t window = test.kind == TestValue::Kind::kLevel   ? kLevelWindows[test.window]

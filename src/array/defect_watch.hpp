@@ -1,5 +1,5 @@
 #pragma once
-// One channel of all sensors, block by block: who is in order. Private to the room.
+// One channel of all sensors, block by block: which sensors are in order. Private to the room.
 
 #include <optional>
 
@@ -8,7 +8,7 @@
 
 namespace coast::array {
 
-/// A sensor out of order in one channel; all in blocks.
+/// A defective sensor in one channel; all in blocks.
 struct Alarm {
   std::size_t sensor = 0;
   int channel = 0;
@@ -20,10 +20,10 @@ struct Alarm {
 
 class DefectWatch {
  public:
-  /// @param recovery  blocks in order until a sensor is taken back
+  /// @param recovery  blocks in order before a sensor is used again
   DefectWatch(ChannelWindows& windows, std::size_t blocks, int channel, std::size_t recovery);
 
-  /// First once over the record, nobody excluded, for how far statistics go in motion; then the watch itself.
+  /// First a pass over the record with all sensors, for the size of the statistics in motion; then the detection itself.
   void run();
   [[nodiscard]] const std::vector<Alarm>& alarms() const { return alarms_; }
   /// `found` in blocks.
@@ -32,9 +32,9 @@ class DefectWatch {
  private:
   struct Trial {
     std::size_t since = 0;
-    double in_motion = 0.0;    ///< blocks, less where there was less motion than when it was found
-    double needs_power = 0.0;  ///< of the motion when it was found; 0: found without regard to motion
-    double most_noise = 0.0;   ///< variance over the usual one, where it was found by its noise: half way back, as factors go
+    double in_motion = 0.0;    ///< blocks, weighted by motion relative to that at the detection
+    double needs_power = 0.0;  ///< of the motion at the detection; 0: detected independent of motion
+    double most_noise = 0.0;   ///< variance over the usual one, if detected by its noise: root of the detected ratio
     std::size_t alarm = 0;     ///< index
   };
   void learn();

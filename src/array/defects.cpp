@@ -32,7 +32,7 @@ void check_input(const Signals& signals, const DefectOptions& options) {
     throw std::invalid_argument("find_defects: an option is not above zero");
 }
 
-/// Of one channel.
+/// Results for one channel.
 struct ChannelResult {
   std::vector<Alarm> alarms;
   std::vector<Disagreement> disagreements;
@@ -58,7 +58,7 @@ ChannelResult watch_channel(const Signals& signals, const ParityBlocks& blocks, 
   return result;
 }
 
-/// In columns. The last block of a record ends with it.
+/// In columns. The last block of a record extends to its end.
 Defect in_columns(const Alarm& alarm, const ParityBlocks& blocks, std::size_t samples) {
   Defect defect;
   defect.sensor = alarm.sensor;
@@ -70,7 +70,7 @@ Defect in_columns(const Alarm& alarm, const ParityBlocks& blocks, std::size_t sa
   return defect;
 }
 
-/// Defects of one sensor that overlap (or touch) and were found within `apart` columns are one; of outages only those of one
+/// Joins defects of one sensor that overlap (or touch) and were detected within `apart` columns; of outages only those of one
 /// kind.
 std::vector<Defect> joined(std::vector<Defect> defects, std::size_t apart, bool same_kind) {
   std::sort(defects.begin(), defects.end(), [](const Defect& a, const Defect& b) {

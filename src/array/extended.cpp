@@ -18,7 +18,7 @@ constexpr noise::Sensor sensor_of(int channel) {
   return channel < 3 ? noise::Sensor::kGyro : noise::Sensor::kAccel;
 }
 
-/// The sensor's axis that lies along an axis of the body.
+/// The sensor's axis along an axis of the body.
 struct Along {
   int axis = 0;
   double sign = 1.0;
@@ -34,8 +34,8 @@ Along along(const ModelledSensor& sensor, int body_axis) {
   return {static_cast<int>(axis), sensor.C_s_b(body_axis, axis) > 0.0 ? 1.0 : -1.0};
 }
 
-/// A scale factor keeps its sign: the signal that it acts on turns round with the axis. The two misalignments of an axis are
-/// alike and as likely of either sign, so it does not matter which is which where axes change places.
+/// A scale factor keeps its sign: its input signal changes sign with the axis. The two misalignments of an axis have the same
+/// distribution, symmetric in sign, so their order does not matter if axes are exchanged.
 double sign_of(const noise::Process& process, const Along& own) {
   return process.input() == noise::Input::kOne ? own.sign : 1.0;
 }

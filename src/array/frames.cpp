@@ -16,9 +16,9 @@ namespace coast::array {
 namespace {
 
 constexpr int kDegreeOfFit = 4;
-constexpr int kNarrowest = 2;  // of the differentiators: five samples hold a polynomial of fourth degree
+constexpr int kNarrowest = 2;  // of the differentiators: five samples determine a polynomial of fourth degree
 
-/// Mean rates over the sensors that may be used, and through all where none may.
+/// Mean rates over the sensors that may be used; over all if none may.
 Eigen::Matrix3Xd mean_rates(const Signals& signals) {
   const auto count = static_cast<Eigen::Index>(signals.samples());
   Eigen::Matrix3Xd omega(3, count);
@@ -27,7 +27,7 @@ Eigen::Matrix3Xd mean_rates(const Signals& signals) {
   return omega;
 }
 
-/// Noise of the mean rates from how the sensors differ in neighbouring samples: constant biases and common motion fall out.
+/// Noise of the mean rates from the sensors' differences of adjacent samples: constant biases and common motion cancel.
 double noise_of_mean(const Signals& signals) {
   double sum = 0.0;
   double terms = 0.0;
@@ -35,7 +35,7 @@ double noise_of_mean(const Signals& signals) {
     for (std::size_t n = 1; n < signals.samples(); ++n) {
       const SpreadOfChange spread = spread_of_change(signals, c, n);
       if (spread.sensors < 2) continue;
-      // Each sensor's change has twice the variance of a sample; the mean of K has the K-th part.
+      // Each sensor's change has twice the variance of a sample; the mean of K has 1/K of it.
       sum += spread.variance / 2.0 / static_cast<double>(spread.sensors);
       terms += 1.0;
     }
@@ -48,10 +48,10 @@ double mean_square(const Eigen::Matrix3Xd& difference) {
   return difference.squaredNorm() / static_cast<double>(difference.size());
 }
 
-/// Half widths that are tried: each about 1.4 times the one before.
+/// Half widths to be tried: each about 1.4 times the one before.
 constexpr std::array kHalfWidths{2, 3, 4, 6, 8, 11, 16, 22, 31, 44};
 
-/// A derivative with the next narrower one beside it.
+/// A derivative and the next narrower one.
 struct Candidate {
   Eigen::Matrix3Xd alpha;
   Eigen::RowVectorXd coefficients;
@@ -65,10 +65,10 @@ double noise_of_difference(const Eigen::RowVectorXd& wide, const Eigen::RowVecto
   return difference.squaredNorm();
 }
 
-/// Mean square of the motion that the wider of two derivatives loses. Their difference holds the noise of both, which is known,
-/// and of the lost motion, which grows with the fourth power of the width, the share that the narrower one has not lost too.
+/// Mean square of the motion lost by the wider of two derivatives. Their difference contains the noise of both, which is known,
+/// and of the lost motion, which grows with the fourth power of the width, the part that the narrower one has not lost too.
 double lost_motion(const Candidate& wide, const Candidate& narrow, double variance) {
-  // Nearer to an end than m samples a slope is noisier than the filter in the middle: left out where there is a middle.
+  // Within m samples of an end a slope is noisier than the filter in the middle: left out if there is a middle.
   const Eigen::Index edge = wide.alpha.cols() > 8 * wide.half_width ? wide.half_width : 0;
   const Eigen::Index inner = wide.alpha.cols() - 2 * edge;
   const double moved = mean_square(wide.alpha.middleCols(edge, inner) - narrow.alpha.middleCols(edge, inner));
@@ -134,7 +134,7 @@ AngularMotion angular_motion(const Signals& signals) {
     if (2 * m + 1 > motion.omega.cols()) break;
     const Differentiator d(m, signals.dt);
     Candidate candidate{d.apply(motion.omega), d.coefficients(), m};
-    // Two that are both too wide differ by little: what a narrower one loses is lost to a wider one as well.
+    // Two derivatives that are both too wide differ little: what a narrower one loses is lost in a wider one as well.
     if (before.half_width > 0) lost = std::max(lost, lost_motion(candidate, before, variance));
     const double risk = lost + variance * candidate.coefficients.squaredNorm();
     if (risk < least) {

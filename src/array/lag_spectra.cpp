@@ -16,7 +16,7 @@ constexpr double kTapered = 0.1;  // of the window, at each end
 constexpr Eigen::Index kLinesInBand = 32;
 constexpr double kBeyondChance = 6.9;  // log of a thousand
 
-/// A length at or above n that the transform is fast for.
+/// A length of at least n for which the transform is fast.
 Eigen::Index fast_length(Eigen::Index n) {
   for (;; ++n) {
     Eigen::Index rest = n;
@@ -26,7 +26,7 @@ Eigen::Index fast_length(Eigen::Index n) {
   }
 }
 
-/// Lines 0 .. n/2 of a column, with zeros to length n.
+/// Lines 0 .. n/2 of a column, zero-padded to length n.
 Lines half_spectrum(const Eigen::VectorXd& column, Eigen::Index n) {
   std::vector<double> padded(static_cast<std::size_t>(n), 0.0);
   std::copy(column.begin(), column.end(), padded.begin());
@@ -47,17 +47,17 @@ Eigen::VectorXd cosine_taper(Eigen::Index n) {
   return taper;
 }
 
-/// What every line counts for: weighted cross spectrum, and the noise of its imaginary part.
+/// Contribution of a line: weighted cross spectrum, and the noise of its imaginary part.
 struct LagLine {
   double omega;  ///< rad per sample
   Line cross;    ///< W conj(A) B
   double noise;  ///< W^2 |A|^2 R/2
 };
 
-/// Coherence of a band of lines, which are `independent` of each other as they are tapered.
+/// Coherence of a band of lines, of which `independent` are independent because of the taper.
 struct Band {
-  double coherence;  ///< less its bias
-  double chance;     ///< exponential of mean one where nothing is common
+  double coherence;  ///< minus its bias
+  double chance;     ///< exponential of mean one if there is no common signal
   double weight;     ///< W
   double noise;      ///< R, per line
 };
@@ -75,14 +75,14 @@ Band band_of(const Lines& A, const Lines& B, std::size_t from, std::size_t to, d
   Band band{};
   band.chance = -(independent - 1.0) * std::log1p(-raw);
   band.coherence = std::clamp((independent * raw - 1.0) / (independent - 1.0), 0.0, 1.0 - 1e-12);
-  // Chance bands are many, and high in frequency where they count most: only what is coherent beyond one in a thousand.
+  // Chance bands are many, and high frequencies have most weight: only coherence significant at one in a thousand is used.
   const bool counts = band.chance > kBeyondChance && band.coherence > 0.0;
   band.weight = counts ? band.coherence / (1.0 - band.coherence) * lines / std::abs(ab) : 0.0;
   band.noise = bb / lines * (1.0 - band.coherence);
   return band;
 }
 
-/// J and its two derivatives by the lag.
+/// J and its two derivatives with respect to the lag.
 Eigen::Vector3d correlation(const std::vector<LagLine>& lines, double lag) {
   Eigen::Vector3d J = Eigen::Vector3d::Zero();
   for (const LagLine& line : lines) {
@@ -92,7 +92,7 @@ Eigen::Vector3d correlation(const std::vector<LagLine>& lines, double lag) {
   return J;
 }
 
-/// The largest value within +-2 samples: a grid as fine as the highest frequency asks for, then Newton.
+/// The largest value within +-2 samples: a grid as fine as the highest frequency requires, then Newton.
 double peak_lag(const std::vector<LagLine>& lines) {
   constexpr double kStep = 0.125;
   double best = 0.0, most = -1.0;
@@ -164,7 +164,7 @@ FineLag fine_lag(LagSamples a, LagSamples b) {
     const Lines A = half_spectrum(a.col(axis).cwiseProduct(taper), n), B = half_spectrum(b.col(axis).cwiseProduct(taper), n);
     const auto size = static_cast<std::size_t>(n / 2);
     const auto width = static_cast<std::size_t>(kLinesInBand);
-    for (std::size_t from = 1; from + width <= size; from += width) {  // line 0 was taken off, Nyquist's has no phase
+    for (std::size_t from = 1; from + width <= size; from += width) {  // line 0 was subtracted, Nyquist's has no phase
       const std::size_t to = from + 2 * width <= size ? from + width : size;
       const Band band = band_of(A, B, from, to, correlated * padded);
       chance += band.chance;

@@ -10,22 +10,22 @@ namespace coast::array {
 /// One column per axis, one row per sample.
 using LagSamples = Eigen::MatrixXd;
 
-/// Takes mean and trend off every column.
+/// Subtracts mean and trend from every column.
 void detrend(LagSamples& samples);
 
-/// Whole samples by which b is late against a, at the largest normalised correlation within +-most.
-/// @param b  has `most` rows more at both ends than a
+/// Integer samples by which b is late relative to a, at the largest normalised correlation within +-most.
+/// @param b  has `most` rows more than a at both ends
 [[nodiscard]] Eigen::Index whole_lag(const LagSamples& a, const LagSamples& b, Eigen::Index most);
 
-/// A lag in samples, and how well it is known.
+/// A lag in samples, and its uncertainty.
 struct FineLag {
   double lag = 0.0;
   double sigma = 0.0;
   double coherence = 0.0;
   double rms_frequency = 0.0;  ///< rad per sample
-  double significance = 0.0;   ///< of the coherence, in sigmas of what chance gives
+  double significance = 0.0;   ///< of the coherence, in sigmas of its distribution by chance
 };
-/// Within +-2 samples. Both as long as each other.
+/// Within +-2 samples. Both of the same length.
 [[nodiscard]] FineLag fine_lag(LagSamples a, LagSamples b);
 
 }  // namespace coast::array

@@ -15,7 +15,7 @@ struct Tridiagonal {
   std::vector<double> right;
 };
 
-/// Where a point lies among the knots: in interval k, at a fraction of it.
+/// Position of a point among the knots: in interval k, at a fraction of it.
 struct SplinePlace {
   std::size_t k = 0;
   double fraction = 0.0;
@@ -35,7 +35,7 @@ double spline_value(const std::vector<double>& values, const SplinePlace& at) {
   return values[at.k] + at.fraction * (values[at.k + 1] - values[at.k]);
 }
 
-/// Pivots from above and from below: d_k + e_k - a_k is one over element (k, k) of the inverse.
+/// Pivots from both ends: d_k + e_k - a_k is one over element (k, k) of the inverse.
 void solve_tridiagonal(const Tridiagonal& system, std::vector<double>& values, std::vector<double>& variances) {
   const std::size_t n = system.diagonal.size();
   std::vector<double> down = system.diagonal, up = system.diagonal, right = system.right;
@@ -73,7 +73,7 @@ LinearSpline fit_spline(const std::vector<LinePoint>& points, std::vector<double
   constexpr int kHuberSteps = 5;
   constexpr int kSteps = 15;
   constexpr double kHuber = 1.345;
-  constexpr double kLeast = 1e-3;  // of a weight: a knot among wrong points only must still have a value
+  constexpr double kLeast = 1e-3;  // of a weight: a knot with only outliers nearby must still have a value
   LinearSpline fit;
   fit.knots = std::move(knots);
   const std::size_t n = fit.knots.size();

@@ -1,5 +1,5 @@
 #pragma once
-// A broken line through points of which some are wrong. Private to the room.
+// A piecewise linear curve through points with outliers. Private to the room.
 
 #include <vector>
 
@@ -7,7 +7,7 @@
 
 namespace coast::array {
 
-/// Values at knots, straight between them.
+/// Values at knots, linear between them.
 struct LinearSpline {
   std::vector<double> knots;   ///< increasing
   std::vector<double> values;  ///< at the knots
@@ -15,7 +15,7 @@ struct LinearSpline {
 };
 
 /// Weighted robust fit (the same M-estimate as `fit_line`), O(points).
-/// @param knots  increasing, every one at the x of a point; the first and last at the first and last point, so that every value
+/// @param knots  increasing, each at the x of a point; the first and last at the first and last point, so that every value
 ///               is determined
 [[nodiscard]] LinearSpline fit_spline(const std::vector<LinePoint>& points, std::vector<double> knots);
 

@@ -18,7 +18,7 @@ namespace {
 
 constexpr int kStudiedChannel = 0;
 
-/// What a model says of a series before each sample.
+/// A model's prediction of a series before each sample.
 struct Predicted {
   Eigen::VectorXd mean;
   Eigen::VectorXd variance;
@@ -41,7 +41,7 @@ double lag_one(const noise::ArmaGarch& model) {
          std::inner_product(psi.begin(), psi.end(), psi.begin(), 0.0);
 }
 
-/// One drawn array.
+/// One simulated array.
 struct DrawnArray {
   Eigen::RowVectorXd motion;
   Eigen::MatrixXd errors;  // K x N
@@ -76,7 +76,7 @@ double mean_square_of(const Eigen::Ref<const Eigen::RowVectorXd>& errors) {
   return errors.squaredNorm() / static_cast<double>(errors.size());
 }
 
-/// Weighted by variances, predictions taken off.
+/// Weighted by variances, predictions subtracted.
 Eigen::RowVectorXd merged_errors(const Eigen::MatrixXd& errors, const std::vector<Predicted>& predicted, bool subtract) {
   Eigen::RowVectorXd merged(errors.cols());
   for (Eigen::Index n = 0; n < errors.cols(); ++n) {

@@ -22,6 +22,7 @@ using Design = Eigen::Matrix<double, 3, kUnknowns>;
 /// Means over blocks in which every sensor may be used throughout.
 struct Blocks {
   Eigen::Matrix3Xd omega, alpha, force;                                   // of the platform at the origin
+  std::vector<Eigen::Matrix3d> lever;                                     // [alpha x] + [omega x][omega x]
   std::vector<Eigen::Matrix<double, kChannels, Eigen::Dynamic>> sensors;  // in body axes, moved to the origin
   double alpha_noise = 0.0;                                               // rad/s^2, of a block's mean, each axis
 };
@@ -47,12 +48,16 @@ Blocks block_means(const Signals& signals, const AngularMotion& motion, std::siz
     if (whole(signals, first, length)) firsts.push_back(first);
   const auto count = static_cast<Eigen::Index>(firsts.size());
   const auto width = static_cast<Eigen::Index>(length);
-  Blocks blocks{Eigen::Matrix3Xd(3, count), Eigen::Matrix3Xd(3, count), Eigen::Matrix3Xd::Zero(3, count), {}, 0.0};
+  Blocks blocks{Eigen::Matrix3Xd(3, count), Eigen::Matrix3Xd(3, count), Eigen::Matrix3Xd::Zero(3, count), {}, {}, 0.0};
   blocks.alpha_noise = noise_of_alpha(motion, signals.dt, length);
   for (Eigen::Index i = 0; i < count; ++i) {
     const auto first = static_cast<Eigen::Index>(firsts[static_cast<std::size_t>(i)]);
     blocks.omega.col(i) = motion.omega.middleCols(first, width).rowwise().mean();
     blocks.alpha.col(i) = motion.alpha.middleCols(first, width).rowwise().mean();
+    // The mean of [omega x]^2 = omega omega' - omega'omega I, not the square of the mean: rates change within a block.
+    const Eigen::Matrix3d moments = motion.omega.middleCols(first, width) * motion.omega.middleCols(first, width).transpose();
+    blocks.lever.emplace_back(geo::skew(blocks.alpha.col(i)) +
+                              (moments - moments.trace() * Eigen::Matrix3d::Identity()) / static_cast<double>(length));
   }
   for (const SensorSignals& sensor : signals.sensors) {
     auto& own = blocks.sensors.emplace_back(kChannels, count);
@@ -65,10 +70,6 @@ Blocks block_means(const Signals& signals, const AngularMotion& motion, std::siz
   return blocks;
 }
 
-Eigen::Matrix3d lever_matrix(const Eigen::Vector3d& omega, const Eigen::Vector3d& alpha) {
-  return geo::skew(alpha) + geo::skew(omega) * geo::skew(omega);
-}
-
 Design rates_design(const Blocks& blocks, Eigen::Index i) {
   Design H = Design::Zero();
   H.leftCols<3>() = geo::skew(blocks.omega.col(i));
@@ -79,7 +80,7 @@ Design rates_design(const Blocks& blocks, Eigen::Index i) {
 Design forces_design(const Blocks& blocks, Eigen::Index i) {
   Design H = Design::Zero();
   H.leftCols<3>() = geo::skew(blocks.force.col(i));
-  H.middleCols<3>(3) = lever_matrix(blocks.omega.col(i), blocks.alpha.col(i));
+  H.middleCols<3>(3) = blocks.lever[static_cast<std::size_t>(i)];
   H.rightCols<3>().setIdentity();
   return H;
 }
@@ -87,15 +88,15 @@ Design forces_design(const Blocks& blocks, Eigen::Index i) {
 struct Solution {
   Unknowns x = Unknowns::Zero();
   Normal covariance = Normal::Zero();
-  double rates_rms = 0.0;   // of the residuals with the biases alone taken off
+  double rates_rms = 0.0;   // of the residuals with only the biases subtracted
   double forces_rms = 0.0;  // likewise
-  double rates_left = 1.0;  // after all of it: the weights of the next pass
+  double rates_left = 1.0;  // of the full fit: the weights of the next iteration
   double forces_left = 1.0;
 };
 
-/// The angular acceleration is noisy, and its noise e is in the regressors of the place and, with the stated place, in the
-/// residuals: least squares would pull the place towards the mean of all. E [e x]'[e x] = 2 sigma^2 I is taken off on both
-/// sides. Where turning does not stand out of its noise the place stays as it is.
+/// The angular acceleration is noisy, and its noise e is in the regressors of the position and, by the stated position, in the
+/// residuals: least squares would bias the position towards the mean of all. E [e x]'[e x] = 2 sigma^2 I is subtracted on both
+/// sides. If the angular acceleration does not exceed its noise, the position is not changed.
 void take_off_noise_of_alpha(const Blocks& blocks, double forces_weight, const Eigen::Vector3d& from_mean, Normal& N,
                              Unknowns& b) {
   const double noise = forces_weight * static_cast<double>(blocks.alpha.cols()) * 2.0 * blocks.alpha_noise * blocks.alpha_noise;
@@ -111,9 +112,9 @@ void take_off_noise_of_alpha(const Blocks& blocks, double forces_weight, const E
   b.segment<3>(3) += noise * from_mean;
 }
 
-/// Residuals of one sensor against the mean of all on its twelve unknowns.
-/// @param from_mean  its place less the mean of all
-/// @param refined  what has been added to the stated values so far: the prior pulls back towards those
+/// Residuals of one sensor relative to the mean of all, on its twelve unknowns.
+/// @param from_mean  its position minus the mean of all
+/// @param refined  sum of corrections to the stated values so far: the prior is centred on the stated values
 Solution solve_sensor(const Blocks& blocks, std::size_t k, const Solution& before, const Unknowns& prior_precision,
                       const Unknowns& refined, const Eigen::Vector3d& from_mean) {
   const auto& own = blocks.sensors[k];
@@ -152,7 +153,7 @@ Solution solve_sensor(const Blocks& blocks, std::size_t k, const Solution& befor
   return s;
 }
 
-/// What the sensors have in common is no refinement: the mean over the sensors is taken off.
+/// A common change of all sensors is no refinement: the mean over the sensors is subtracted.
 void hold_datum(std::vector<Solution>& solutions) {
   Eigen::Matrix<double, 6, 1> mean = Eigen::Matrix<double, 6, 1>::Zero();
   for (const Solution& s : solutions) mean += s.x.head<6>() / static_cast<double>(solutions.size());
@@ -173,7 +174,7 @@ Spread rms_over(const std::vector<Solution>& solutions) {
   return {std::sqrt(spread.rates), std::sqrt(spread.forces)};
 }
 
-/// What has been added to a stated frame.
+/// The correction of a stated frame.
 Unknowns refinement(const SensorFrame& frame, const SensorFrame& stated) {
   Unknowns x = Unknowns::Zero();
   x.head<3>() = geo::rotation_vector(Eigen::Quaterniond(frame.C_s_b * stated.C_s_b.transpose()));
@@ -188,8 +189,8 @@ std::vector<Solution> solve_all(const Signals& sensor_axes, const std::vector<Se
   Signals body = sensor_axes;
   turn_to_body(body, frames);
   AngularMotion motion = angular_motion(body);
-  // A wide differentiator loses some of the turning, which would show as shorter lever arms; means over blocks are quiet
-  // enough.
+  // A wide differentiator loses part of the angular acceleration, which would show as shorter lever arms; means over blocks
+  // have low noise.
   motion.half_width = kSharpest;
   motion.alpha = Differentiator(kSharpest, body.dt).apply(motion.omega);
   move_to_origin(body, frames, motion);
@@ -221,7 +222,7 @@ RefinedMounting refine_mounting(const Signals& sensor_axes, const std::vector<Se
   RefinedMounting result;
   std::vector<SensorFrame> frames = stated;
   std::vector<Solution> solutions(stated.size());
-  for (Solution& s : solutions) s.rates_left = 0.01, s.forces_left = 0.1;  // first weights; replaced by what is found
+  for (Solution& s : solutions) s.rates_left = 0.01, s.forces_left = 0.1;  // initial weights; replaced by the estimates
   for (int pass = 0; pass < options.iterations; ++pass) {
     solutions = solve_all(sensor_axes, frames, stated, options.block_s, solutions, prior_precision);
     if (pass == 0) {
@@ -231,7 +232,7 @@ RefinedMounting refine_mounting(const Signals& sensor_axes, const std::vector<Se
     }
     hold_datum(solutions);
     for (std::size_t k = 0; k < frames.size(); ++k) {
-      // The residual omega x phi is taken off by the rotation by +phi: v + phi x v = v - v x phi.
+      // The residual omega x phi is removed by the rotation by +phi: v + phi x v = v - v x phi.
       frames[k].C_s_b = geo::rotation_matrix(solutions[k].x.head<3>()) * frames[k].C_s_b;
       frames[k].r_b += solutions[k].x.segment<3>(3);
     }

@@ -29,7 +29,7 @@ void validate_packets(const std::vector<Packet>& packets, const Counting& counti
   }
 }
 
-/// Puts the packets of one device in order, one after the other.
+/// Orders the packets of one device, one after the other.
 class Unwrapping {
  public:
   explicit Unwrapping(const Counting& counting) : counting_(counting) {}
@@ -65,7 +65,7 @@ class Unwrapping {
   }
 
  private:
-  static constexpr std::int64_t kForget = 1000;  // packets: 1000 ppm of it are one packet
+  static constexpr std::int64_t kForget = 1000;  // packets: 1000 ppm of this are one packet
 
   [[nodiscard]] double delay(std::int64_t counter, double arrival_s) const {
     return arrival_s - static_cast<double>(counter) * counting_.interval_s;
@@ -77,7 +77,7 @@ class Unwrapping {
     fastest_arrival_ = packet.arrival_s;
   }
 
-  /// Of all counters that look like this one the nearest to the time passed, if it fits.
+  /// Of all counter values congruent to this one the closest to the elapsed time, if it fits.
   [[nodiscard]] std::optional<std::int64_t> unwrapped(const Packet& packet) const {
     const std::int64_t newest = report_.segments.back().packets.back().counter;
     const double by_time =
@@ -116,7 +116,7 @@ class Unwrapping {
       ++report_.doubled;
       return;
     }
-    // Late, but older than the first of its segment: it belongs to what was before the restart.
+    // Late, but older than the first of its segment: it belongs to the time before the restart.
     if (at == packets.begin()) {
       ++report_.stray;
       return;

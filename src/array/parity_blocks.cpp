@@ -27,7 +27,7 @@ void parity_means(const Signals& signals, const std::vector<std::vector<std::uin
   }
 }
 
-/// Median over the sensors with their biases taken off; none there: as before.
+/// Median over the sensors with their biases subtracted; without sensors: the previous value.
 void common_of_blocks(ParityBlocks& blocks) {
   std::vector<double> values;
   blocks.common.setZero(kChannels, static_cast<Eigen::Index>(blocks.count));
@@ -45,7 +45,7 @@ void common_of_blocks(ParityBlocks& blocks) {
   }
 }
 
-/// Biases against the common signal; their own median over the sensors is the array's zero.
+/// Biases relative to the common signal; their own median over the sensors is the array's zero.
 void biases_of_blocks(ParityBlocks& blocks) {
   std::vector<double> values;
   for (int c = 0; c < kChannels; ++c) {
@@ -59,7 +59,7 @@ void biases_of_blocks(ParityBlocks& blocks) {
   }
 }
 
-/// Roughness from the median over the sensors of each difference: a burst in one of them is not motion.
+/// Roughness from the median over the sensors of each difference: a burst in one sensor is not motion.
 void motion_power(const Signals& signals, const std::vector<std::vector<std::uint8_t>>& present, ParityBlocks& blocks) {
   const auto count = static_cast<Eigen::Index>(blocks.count);
   blocks.power.setZero(2, count);
@@ -96,7 +96,7 @@ void motion_power(const Signals& signals, const std::vector<std::vector<std::uin
   }
 }
 
-/// Motion about its record's mean, and the channel's own rate of change per block.
+/// Motion about its mean over the record, and the channel's own rate of change per block.
 Regressors regressors_at(const ParityBlocks& blocks, const Eigen::VectorXd& centre, int channel, Eigen::Index b) {
   const int group = channel / 3 * 3;
   const Eigen::Index before = std::max<Eigen::Index>(b - 1, 0);
@@ -112,7 +112,7 @@ struct ResponseData {
   Eigen::VectorXd y;
 };
 
-/// Differences over five seconds: biases drop out, slow motion stays.
+/// Differences over five seconds: biases cancel, slow motion remains.
 ResponseData response_data(const ParityBlocks& blocks, const Eigen::VectorXd& centre, std::size_t sensor, int channel) {
   constexpr Eigen::Index kLag = 50;
   const auto count = static_cast<Eigen::Index>(blocks.count);
@@ -128,7 +128,7 @@ ResponseData response_data(const ParityBlocks& blocks, const Eigen::VectorXd& ce
   return data;
 }
 
-/// Least absolute values by reweighting, then bisquare: the first finds the majority, the second lets go of the rest.
+/// Least absolute deviations by reweighting, then bisquare: the first finds the majority, the second rejects the rest.
 Regressors robust_response(const ResponseData& data) {
   constexpr int kRounds = 12;
   constexpr double kCutoff = 4.685;  // 95 % efficient for normal errors (Beaton & Tukey 1974)
@@ -149,7 +149,7 @@ Regressors robust_response(const ResponseData& data) {
                                       : 0.0;
     }
     Eigen::Matrix4d A = data.x * weight.asDiagonal() * data.x.transpose();
-    // Prior of 0.1 on each coefficient: without motion nothing is estimated.
+    // Prior sigma of 0.1 on each coefficient: without motion the estimate is zero.
     A.diagonal().array() += scale * scale / 0.01;
     g = A.ldlt().solve(data.x * weight.cwiseProduct(data.y));
   }
@@ -173,7 +173,7 @@ ParityBlocks make_blocks(const Signals& signals, const std::vector<std::vector<s
   blocks.seconds = static_cast<double>(blocks.length) * signals.dt;
   blocks.bias.assign(signals.sensors.size(), Channels::Zero());
   parity_means(signals, present, blocks);
-  // Medians of sensors whose biases are in them jump from one to another: the second round has the biases.
+  // Medians of sensors with biases jump between sensors: the second iteration has the biases subtracted.
   for (int round = 0; round < 2; ++round) {
     common_of_blocks(blocks);
     biases_of_blocks(blocks);

@@ -1,5 +1,5 @@
 #pragma once
-// Signals in blocks, what the array has in common, and each sensor's constant imperfections. Private to the room.
+// Signals in blocks, the common signal of the array, and each sensor's constant imperfections. Private to the room.
 
 #include <vector>
 
@@ -11,18 +11,18 @@ inline constexpr double kBlock = 0.1;  // s; but at least four samples
 
 struct ParityBlocks {
   std::size_t length = 1;  ///< samples in a block
-  std::size_t count = 0;   ///< whole blocks; what is left of the record after them is not tested
+  std::size_t count = 0;   ///< whole blocks; the remaining samples of the record are not tested
   double seconds = 0.0;    ///< of a block
 
-  /// [sensor] 6 x count: means. Constant biases are in them, constant responses to motion are not.
+  /// [sensor] 6 x count: means. They include constant biases, but not constant responses to motion.
   std::vector<Eigen::MatrixXd> means;
-  /// [sensor][block] bit c: all samples of channel c are there.
+  /// [sensor][block] bit c: all samples of channel c are available.
   std::vector<std::vector<std::uint8_t>> whole;
-  /// 6 x count: median over the sensors, biases taken off.
+  /// 6 x count: median over the sensors, biases subtracted.
   Eigen::MatrixXd common;
   /// [sensor] median over the record of mean - common.
   std::vector<Channels> bias;
-  /// 2 x count (rates, forces): power of the motion, slow and within blocks; what residuals of dynamics may grow with.
+  /// 2 x count (rates, forces): power of the motion, slow and within blocks, for the growth of residuals with dynamics.
   Eigen::Matrix2Xd power;
   /// 2 x count: mean square of the common signal's sample-to-sample differences.
   Eigen::Matrix2Xd roughness;
@@ -32,14 +32,14 @@ struct ParityBlocks {
   }
 };
 
-/// @param present  [sensor][column] bit c: there is a value
+/// @param present  [sensor][column] bit c: a value is available
 [[nodiscard]] ParityBlocks make_blocks(const Signals& signals, const std::vector<std::vector<std::uint8_t>>& present);
 
 /// Regresses each sensor's residual on the motion (three axes and the channel's own rate of change) over the whole record and
-/// takes that off its means: constant misalignment, scale and lag. Bisquare weights: a third of the record may be defective.
+/// subtracts the result from its means: constant misalignment, scale and lag. Bisquare weights: a third of the record may be
 void remove_constant_response(ParityBlocks& blocks);
 
-/// Median; the values are reordered. 0 of none.
+/// Median; the values are reordered. 0 if there are none.
 [[nodiscard]] double median_of(std::vector<double>& values);
 
 }  // namespace coast::array

@@ -1,4 +1,4 @@
-// What ChannelWindows knows of the past: levels, and what motion adds.
+// The past of ChannelWindows: levels, and inflation by motion.
 
 #include <cmath>
 
@@ -13,8 +13,8 @@ constexpr double kMedianOfThreeDegrees = 2.3660;
 
 }  // namespace
 
-/// One step of each sensor's local-level filter, against the weighted mean of the set. The sum of all levels is nobody's to
-/// know and stays where it is.
+/// One step of each sensor's local-level filter, relative to the weighted mean of the set. The sum of all levels is not
+/// observable and is kept constant.
 void ChannelWindows::absorb(std::size_t b, const Set& set, const std::vector<std::size_t>& in_order_from) {
   for (std::size_t i = 0; i < kLevelWindows.size(); ++i) {
     for (std::size_t k = 0; k < sensors_; ++k) level_uncertainty_[i][k] += noise_.walk_variance(k);

@@ -67,7 +67,7 @@ void ChannelNoise::find_members() {
   }
 }
 
-/// Members' values, the others with the largest of them.
+/// Values of the members; the others get the largest of them.
 Eigen::VectorXd ChannelNoise::for_all(const Eigen::VectorXd& of_members) const {
   Eigen::VectorXd all = Eigen::VectorXd::Constant(static_cast<Eigen::Index>(sensors_), of_members.maxCoeff());
   for (std::size_t m = 0; m < members_.size(); ++m)
@@ -75,7 +75,7 @@ Eigen::VectorXd ChannelNoise::for_all(const Eigen::VectorXd& of_members) const {
   return all;
 }
 
-/// About the block's mean, so that slow differences do not count and white noise gives exactly length - 1 degrees of freedom.
+/// About the block's mean, so that slow differences have no effect and white noise has exactly length - 1 degrees of freedom.
 void ChannelNoise::mean_squares(const Signals& signals) {
   const auto length = static_cast<Eigen::Index>(blocks_.length);
   squares_.setConstant(static_cast<Eigen::Index>(members_.size()), static_cast<Eigen::Index>(blocks_.count), -1.0);
@@ -93,7 +93,7 @@ void ChannelNoise::mean_squares(const Signals& signals) {
   }
 }
 
-/// From the spread of the cube roots, sqrt(2/(9 nu)) of their middle, within a minute so that slow changes do not count.
+/// From the spread of the cube roots, sqrt(2/(9 nu)) of their middle, within a minute so that slow changes have no effect.
 void ChannelNoise::degrees_of_freedom() {
   constexpr std::size_t kPiece = 600;
   const auto most = static_cast<double>(blocks_.length - 1);
@@ -110,8 +110,8 @@ void ChannelNoise::degrees_of_freedom() {
   }
 }
 
-/// Running medians at nodes. Noise that changes slowly has the centred one. Where the past and the future differ by half, one
-/// of them is not in order: the smaller counts, so a long burst does not hide itself.
+/// Running medians at nodes. Slowly varying noise uses the centred one. If past and future differ by half, one of them is
+/// defective: the smaller is used, so that a long burst does not hide itself.
 void ChannelNoise::levels(double memory_s) {
   constexpr double kSudden = 1.5;
   step_ = static_cast<std::size_t>(std::max(1.0, std::round(kNodeSeconds / blocks_.seconds)));
@@ -157,7 +157,7 @@ double ChannelNoise::residual_sample_variance(std::size_t k, std::size_t b) cons
   return std::max(sample_variance(k, b) * (1.0 - 2.0 / count) + sum / (count * count), 1e-300);
 }
 
-/// Of the residuals about the plain mean: median square of the difference of neighbouring windows' means over the
+/// For the residuals about the plain mean: median square of the difference of neighbouring windows' means over the
 /// variance of their samples, so that slow changes of the noise cancel.
 Eigen::VectorXd ChannelNoise::allan_of(std::size_t window, std::size_t& pairs) const {
   const std::size_t hop = std::max<std::size_t>(1, window / 2);
@@ -187,9 +187,9 @@ Eigen::VectorXd ChannelNoise::allan_of(std::size_t window, std::size_t& pairs) c
   return for_all(own_variances(result));
 }
 
-/// Windows of W blocks: var(difference of neighbours) = 2 a/W + 2 q W/3. White noise a from 0.1 s or 1 s, whichever is more
-/// (bandwidth shorter than a block makes them alike); the walk q from 1 s on, one standard deviation up: a short record says
-/// little about it.
+/// Windows of W blocks: var(difference of neighbours) = 2 a/W + 2 q W/3. White noise a from 0.1 s or 1 s, whichever is larger
+/// (they agree if correlation is shorter than a block); the walk q from 1 s on, plus one standard deviation: a short record has
+/// little information on it.
 void ChannelNoise::slow_noise() {
   constexpr std::size_t kLong = 10;
   std::size_t pairs = 0;

@@ -11,7 +11,7 @@ namespace coast::array {
 namespace {
 
 constexpr double kCoarse = 0.2;
-constexpr std::size_t kLeastRun = 4;  // two pairs of equal values in a row happen to rounded values; a row of four is looked at
+constexpr std::size_t kLeastRun = 4;  // rounded values may have two equal pairs in a row; a run of four is tested
 constexpr double kPiece = 10.0;       // s
 
 struct ValueRun {
@@ -43,8 +43,8 @@ class RepeatedValues {
   int channel_;
   std::vector<ValueRun> runs_;
   std::size_t piece_ = 1;
-  std::vector<double> in_piece_;  ///< chance by runs that start there
-  double overall_ = 0.0;          ///< chance by all runs
+  std::vector<double> in_piece_;  ///< probability from the runs that start there
+  double overall_ = 0.0;          ///< probability from all runs
   double share_ = 0.0;            ///< of samples that repeat, in the middle piece
   double step_ = 0.0;             ///< smallest change; infinite: there is none
 };
@@ -58,7 +58,7 @@ void RepeatedValues::split() {
       continue;
     }
     std::size_t end = n + 1;
-    // Interpolation onto the common grid leaves rounding in a constant.
+    // Interpolation onto the common grid leaves rounding errors in a constant.
     const double tolerance = 1e-12 * std::abs(value(n));
     while (end < samples && there(end) && std::abs(value(end) - value(n)) <= tolerance) ++end;
     runs_.push_back({n, end});
@@ -67,7 +67,7 @@ void RepeatedValues::split() {
   }
 }
 
-/// By runs, of which a stuck value is one however long it is.
+/// By runs; a stuck value is one run of any length.
 void RepeatedValues::count() {
   piece_ = static_cast<std::size_t>(std::max(1.0, std::round(kPiece / signals_.dt)));
   const std::size_t pieces = signals_.samples() / piece_ + 1;
@@ -83,7 +83,7 @@ void RepeatedValues::count() {
     in_piece_.push_back(started[i] >= 20.0 ? repeated[i] / started[i] : 0.0);
     share[i] = std::max(0.0, 1.0 - started[i] / static_cast<double>(piece_));
   }
-  share.pop_back();  // not a whole piece
+  share.pop_back();  // not a complete piece
   overall_ = twice / (all + 1.0);
   share_ = share.size() < 3 ? 0.0 : median_of(share);
 }
@@ -96,8 +96,8 @@ double RepeatedValues::chance_of_repeat(const ValueRun& run) const {
   return std::min(chance, 0.9999);
 }
 
-/// The mean of the others spreads by more than three steps, and not as white noise does. Of a sensor that never changes it is
-/// enough that they do.
+/// The mean of the others spreads by more than three steps, and not as white noise does. For a sensor that never changes it is
+/// sufficient that they move.
 bool RepeatedValues::others_move(const ValueRun& run) const {
   double sum = 0.0, squares = 0.0, changes = 0.0, before = 0.0;
   std::size_t count = 0;

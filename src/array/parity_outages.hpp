@@ -1,5 +1,5 @@
 #pragma once
-// Where a sensor gives no value, or the same one again and again. Private to the room.
+// Where a sensor gives no value, or repeats the same one. Private to the room.
 
 #include "coast/array/defects.hpp"
 
@@ -10,8 +10,8 @@ struct Outages {
   std::vector<Defect> defects;                     ///< kDropout and kStuck, one channel each
 };
 
-/// Runs of one value are geometric with the chance p that a value repeats; p is the channel's own (its quantisation), about
-/// the place and over the record. Where p is above 0.2 the others must move meanwhile: a coarse sensor at rest may repeat.
+/// Runs of one value are geometric with the probability p that a value repeats; p is the channel's own (its quantisation),
+/// estimated locally and over the record. If p is above 0.2 the others must move meanwhile: a coarse sensor at rest may repeat.
 /// @param per_hour  false alarms per channel and sensor
 [[nodiscard]] Outages find_outages(const Signals& signals, double per_hour);
 

@@ -10,7 +10,7 @@ namespace coast::array {
 
 namespace {
 
-/// Chance of one evaluation, by the fixed point of u and its clumps.
+/// Probability of one evaluation, by the fixed point of u and its clumps.
 double chance_per_evaluation(double per_hour, double step_s, std::size_t window, bool two_sided) {
   const double rate = per_hour * step_s / 3600.0;
   double chance = std::min(rate, 0.1);

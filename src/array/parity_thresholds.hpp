@@ -1,5 +1,5 @@
 #pragma once
-// Which values of the tests are beyond chance, and what motion adds to them. Private to the room.
+// Thresholds of the tests, and their increase with motion. Private to the room.
 
 #include <array>
 #include <vector>
@@ -12,16 +12,16 @@ inline constexpr std::array<std::size_t, 2> kMotionWindows{10, 100};
 inline constexpr int kTestsPerChannel = 8;  ///< these and repeated values
 
 /// u with (evaluations per hour) min(1, u^2/W) P = share, P = P(|x| > u) (two-sided) or P(x > u): maxima of a normal averaged
-/// over windows of W that come one evaluation apart arrive in clumps of W/u^2 (Aldous 1989, for a triangular correlation).
+/// over windows of W one evaluation apart occur in clumps of W/u^2 (Aldous 1989, for a triangular correlation).
 /// @param per_hour  false alarms  @param step_s  from evaluation to evaluation
 [[nodiscard]] double normal_threshold(double per_hour, double step_s, std::size_t window, bool two_sided);
-/// x with the same of a chi-square of nu degrees of freedom, whose tail stands in for the normal's of equal chance.
+/// x likewise for a chi-square of nu degrees of freedom, whose tail is treated as the normal's of equal probability.
 [[nodiscard]] double chi2_threshold(double nu, double per_hour, double step_s, std::size_t window);
-/// A squared threshold q for a statistic whose scale is known to a relative standard deviation epsilon: the chance averaged
-/// over a normal error of the scale, exp(-q/2 + (q epsilon)^2/2), is held by q (1 + q epsilon^2).
+/// A squared threshold q for a statistic whose scale has the relative standard deviation epsilon: the probability averaged
+/// over a normal error of the scale, exp(-q/2 + (q epsilon)^2/2), is kept by q (1 + q epsilon^2).
 [[nodiscard]] double for_uncertain_scale(double q, double epsilon);
 
-/// How much larger than by noise alone squares are where the motion has the power x: max(1, constant + slope x).
+/// Factor by which squares exceed those by noise alone at motion of power x: max(1, constant + slope x).
 struct MotionInflation {
   double constant = 1.0;
   double slope = 0.0;
@@ -29,7 +29,7 @@ struct MotionInflation {
   [[nodiscard]] double at(double power) const;
 };
 
-/// One statistic of a window in order: its ratio to the median it has by noise alone, and the power of the motion.
+/// One statistic of a window in order: its ratio to its median by noise alone, and the power of the motion.
 struct RatioAtPower {
   double power;
   double ratio;

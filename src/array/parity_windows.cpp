@@ -68,7 +68,7 @@ void ChannelWindows::start_levels() {
     const auto count = static_cast<double>(std::max<std::size_t>(work.size(), 1));
     for (std::size_t i = 0; i < kLevelWindows.size(); ++i) {
       level_[i][k] = median_of(work);
-      // A median of n has pi/2 times the variance of their mean.
+      // A median of n values has pi/2 times the variance of their mean.
       level_uncertainty_[i][k] = M_PI / 2.0 * noise_.block_variance(k, 0) / count + noise_.walk_variance(k) * count / 3.0;
     }
   }
@@ -97,7 +97,7 @@ double ChannelWindows::mean_roughness(std::size_t window) const {
   return (roughness_(at(b_ + 1)) - roughness_(at(b_ + 1 - window))) / static_cast<double>(window);
 }
 
-/// Of a window's mean of sensor k against its own past: the past's, the walk since then, the mean's noise.
+/// Variance of a window's mean of sensor k relative to its own past: the past's, the walk since then, the mean's noise.
 double ChannelWindows::level_variance(std::size_t k, std::size_t window) const {
   const auto length = static_cast<double>(kLevelWindows[window]);
   const double walk = noise_.walk_variance(k) * (length + 1.0) * (2.0 * length + 1.0) / (6.0 * length);
@@ -142,7 +142,7 @@ void ChannelWindows::enter(std::size_t b, const Set& set) {
   for (std::size_t k = 0; k < sensors_; ++k) residual_of_block(k, set, own, again);
 }
 
-/// Against the mean of the others weighted by their noise: of the block's mean, and of its samples about it.
+/// Relative to the mean of the others weighted by their noise: the block's mean, and its samples about it.
 void ChannelWindows::residual_of_block(std::size_t k, const Set& set, const Eigen::MatrixXd& own, bool again) {
   double weights = 0.0, others = 0.0, sample_weights = 0.0;
   Eigen::RowVectorXd samples = Eigen::RowVectorXd::Zero(own.cols());
@@ -168,7 +168,7 @@ void ChannelWindows::residual_of_block(std::size_t k, const Set& set, const Eige
   cross_[k].col(at(b_ + 1)) = cross_[k].col(at(b_)) + Eigen::Vector4d(e, e * x(0), e * x(1), e * x(2));
 }
 
-/// Negative where the window is not all there.
+/// Negative if the window is incomplete.
 double ChannelWindows::noise_ratio(std::size_t k, std::size_t blocks, std::size_t since) const {
   if (valid_run_[k] < blocks || b_ + 1 < since + blocks) return -1.0;
   return ratio_.row(at(k)).segment(at(b_ + 1 - blocks), at(blocks)).mean();
@@ -184,8 +184,8 @@ double ChannelWindows::motion_chi2(std::size_t k, std::size_t blocks, std::size_
   A << sums(3), sums(4), sums(5), sums(4), sums(6), sums(7), sums(5), sums(7), sums(8);
   A -= x * x.transpose() / length;
   const Eigen::Vector3d g = cross.tail<3>() - x * cross(0) / length;
-  // The constant response, taken off before, is known from differences over the record: two variances over its length.
-  // Noise of the common signal counts as motion of no use: where there is nothing else the statistic goes to zero.
+  // The constant response, subtracted before, is from differences over the record: two variances over its length.
+  // Noise of the common signal counts as motion without information: if there is only noise the statistic goes to zero.
   const double variance = variance_(at(k), at(b_)) * (1.0 + 2.0 * length / static_cast<double>(blocks_.count));
   A.diagonal().array() += variance * length;
   return g.dot(A.ldlt().solve(g)) / variance;

@@ -10,7 +10,7 @@
 
 namespace coast::array {
 
-/// Which test, and how far: `excess` is the statistic over its threshold, both as standard deviations.
+/// A test and its result: `excess` is the statistic over its threshold, both as standard deviations.
 struct TestValue {
   enum class Kind : std::uint8_t { kNone, kLevel, kNoise, kMotion };
   Kind kind = Kind::kNone;
@@ -29,37 +29,37 @@ class ChannelWindows {
   ChannelWindows(const Signals& signals, const ParityBlocks& blocks, const ChannelNoise& noise, int channel,
                  double share_per_hour);
 
-  /// Residuals of block b of all sensors against those of the set that are there. Again for the same b with a smaller set.
+  /// Residuals of all sensors at block b relative to the available ones of the set. Repeated for the same b with a smaller set.
   void enter(std::size_t b, const Set& set);
-  /// Largest test of a sensor in the set at the block entered last; windows begin at `from[k]` or later.
+  /// Largest test of a sensor in the set at the last entered block; windows begin at `from[k]` or later.
   [[nodiscard]] TestValue largest(std::size_t k, const Set& set, const std::vector<std::size_t>& from) const;
-  /// Largest test of a sensor on trial since block `since` against the mean of its own residual since then.
+  /// Largest test of a sensor on trial since block `since` relative to the mean of its own residual since then.
   [[nodiscard]] TestValue largest_on_trial(std::size_t k, std::size_t since) const;
-  /// The past takes in the block that has left each window, of sensors in the set since `in_order_from`.
+  /// Adds the block that has left each window to the past, for sensors in the set since `in_order_from`.
   void absorb(std::size_t b, const Set& set, const std::vector<std::size_t>& in_order_from);
   /// New level from the residuals of blocks [since, b].
   void take_back(std::size_t k, std::size_t since, std::size_t b);
-  /// Level of k at one window moved by its residual at this block.
+  /// Moves the level of k at one window by its residual at this block.
   void follow(std::size_t k, std::size_t window, const Set& set, const std::vector<std::size_t>& from);
-  /// The levels of k at all windows moved to where one window sees it.
+  /// Moves the levels of k at all windows to its level in one window.
   void move_to(std::size_t k, std::size_t window, const Set& set, const std::vector<std::size_t>& from);
 
-  /// Squares at block b for the inflation's fit; windows that do not overlap.
+  /// Squares at block b for the fit of the inflation; windows that do not overlap.
   void learn(std::size_t b, const Set& set, const std::vector<std::size_t>& from);
   void fit_inflations();
 
   /// Residual of sensor k at block i, and its variance; absent blocks have variance 0.
   [[nodiscard]] double residual(std::size_t k, std::size_t i) const { return residual_(at(k), at(i)); }
   [[nodiscard]] double residual_variance(std::size_t k, std::size_t i) const { return variance_(at(k), at(i)); }
-  /// Mean square of the samples of block i over the usual one; 0 where absent.
+  /// Mean square of the samples of block i over the usual one; 0 if absent.
   [[nodiscard]] double roughness_ratio(std::size_t k, std::size_t i) const { return ratio_(at(k), at(i)); }
-  /// Mean residual since a block, against the past, in standard deviations.
+  /// Mean residual since a block, relative to the past, in standard deviations.
   [[nodiscard]] double shift_of_level(std::size_t k, std::size_t since) const;
   /// Mean square of the samples since a block over the usual one.
   [[nodiscard]] double noise_since(std::size_t k, std::size_t since) const {
     return ratio_.row(at(k)).segment(at(since), at(b_ + 1 - since)).mean();
   }
-  /// Of the motion, mean over blocks [first, last].
+  /// Power of the motion, mean over blocks [first, last].
   [[nodiscard]] double power(std::size_t first, std::size_t last) const {
     return (power_(at(last + 1)) - power_(at(first))) / static_cast<double>(last + 1 - first);
   }
@@ -94,10 +94,10 @@ class ChannelWindows {
   int channel_;
   std::size_t sensors_;
   std::size_t b_ = 0;
-  std::size_t entered_ = 0;                      ///< blocks
+  std::size_t entered_ = 0;                      ///< number of blocks
   Eigen::MatrixXd sum_;                          ///< sensor x (blocks + 1): running sums of means
   Eigen::MatrixXd residual_, variance_, ratio_;  ///< sensor x block
-  std::vector<std::size_t> run_, valid_run_;     ///< blocks in a row up to now that are whole, that have a residual
+  std::vector<std::size_t> run_, valid_run_;     ///< consecutive blocks up to now that are whole, that have a residual
   std::array<std::vector<double>, 3> level_, level_uncertainty_;  ///< of the past, by window and sensor
   Eigen::MatrixXd motion_;                              ///< 9 x (blocks + 1): running sums of x and the upper part of x x'
   std::vector<Eigen::Matrix4Xd> cross_;                 ///< [sensor] 4 x (blocks + 1): running sums of residual, x residual

@@ -64,7 +64,7 @@ FittedSum fit_sum(const std::vector<noise::StaticSignal>& records, const std::ve
   return sum;
 }
 
-/// The sum's parameters for the mean of K sensors in place of one sensor's residual.
+/// The sum's parameters for the mean of K sensors instead of one sensor's residual.
 std::vector<double> of_the_mean(const FittedSum& sum, double sensors, double white_factor) {
   std::vector<double> u = sum.fit.u;
   for (const noise::SumModel::Term& term : sum.model.terms()) {
@@ -89,12 +89,12 @@ double level_sd_of_mean(const std::vector<noise::StaticSignal>& records) {
 
 RemainingErrors remaining_errors(const Signals& signals, int channel, double average_s, double white_factor) {
   if (signals.sensors.size() < 2) throw std::invalid_argument("remaining_errors: fewer than 2 sensors");
-  constexpr double kShortestAverage = 0.1;  // s: below it filters of the sensors show
+  constexpr double kShortestAverage = 0.1;  // s: below it the sensors' filters have an effect
   auto block = static_cast<std::size_t>(std::max(1.0, std::round(average_s / signals.dt)));
   std::vector<noise::StaticSignal> records = averaged_residuals(signals, channel, block);
   const auto shortest = static_cast<std::size_t>(std::ceil(kShortestAverage / signals.dt));
   while (records.front().values.size() < kFewestAverages && block / 2 >= shortest) {
-    block /= 2;  // a short record, or one of which much was left out
+    block /= 2;  // a short record, or one with much left out
     records = averaged_residuals(signals, channel, block);
   }
   if (records.front().values.size() < kFewestAverages)

@@ -33,7 +33,7 @@ double grid_over_input(const Grid& grid, const std::vector<SampledRun>& runs) {
   return width;
 }
 
-/// Place of an instant among the edges of a run, in intervals; instants come in order.
+/// Position of an instant among the edges of a run, in intervals; instants are in order.
 class Place {
  public:
   explicit Place(const std::vector<double>& edges) : edges_(edges) {}
@@ -70,7 +70,7 @@ void resample_run(const SampledRun& run, const Grid& grid, const ResamplingKerne
       sum += weight * run.means.col(i);
     }
     const auto column = static_cast<Eigen::Index>(n);
-    // Beside a gap half of the kernel or more is there, so its sum stays away from zero.
+    // Next to a gap at least half of the kernel is available, so its sum is not close to zero.
     result.values.col(column) = sum / weights;
     if (begin == lowest && last == highest) result.usable[n] = kAllUsable;
   }

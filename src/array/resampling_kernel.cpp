@@ -9,7 +9,7 @@ namespace coast::array {
 namespace {
 
 constexpr double kHalfTaps = 16.0;
-/// Kaiser & Schafer (1980): 32 taps and a transition of 0.2 of the sampling frequency give 97 dB, and 97 dB this beta.
+/// Kaiser & Schafer (1980): 32 taps and a transition of 0.2 of the sampling frequency give 97 dB, and this beta for 97 dB.
 constexpr double kBeta = 9.7;
 
 /// Modified Bessel function of order zero by its power series; all terms are positive.
@@ -31,7 +31,7 @@ double kaiser(double share) {
   return bessel_i0(kBeta * std::sqrt(1.0 - share * share)) / bessel_i0(kBeta);
 }
 
-/// A sinc of cutoff 0.5 under the window, per tap, and its spectrum: one up to 0.4, nothing from 0.6 on.
+/// A windowed sinc of cutoff 0.5, per tap, and its spectrum: one up to 0.4, zero from 0.6 on.
 class LowPass {
  public:
   LowPass() {
@@ -44,19 +44,19 @@ class LowPass {
   }
 
  private:
-  static constexpr int kSteps = 1024;  // trapezia: the phase turns by 0.06 over each, and the ends are nothing
+  static constexpr int kSteps = 1024;  // trapezoids: the phase changes by 0.06 over each, and the ends are zero
   static constexpr double kStep = kHalfTaps / kSteps;
   std::vector<double> values_;
 };
 
 /// Inverse transform of the low-pass at f taps times sinc(f width)/sinc(f), f per interval of the input. The window acts on the
-/// low-pass only: over all of the product it would smear the curvature of the ratio of sincs, by 1e-3 of the amplitude.
+/// low-pass only: on the full product it would smear the curvature of the ratio of sincs, by 1e-3 of the amplitude.
 class IdealKernel {
  public:
   IdealKernel(double width, double taps) {
     constexpr double kHighest = 0.65;  // per tap
     const LowPass low_pass;
-    // Gauss-Legendre of three nodes in panels over which the phase turns by at most 0.8: off by 0.4^6/15750 = 3e-7.
+    // Gauss-Legendre with three nodes in panels over which the phase changes by at most 0.8: error 0.4^6/15750 = 3e-7.
     const auto panels = static_cast<std::size_t>(8.0 * kHalfTaps * kHighest);
     const double h = kHighest / static_cast<double>(panels);
     constexpr double kOuter = 0.7745966692414834;  // sqrt(3/5)
@@ -82,15 +82,15 @@ class IdealKernel {
 }  // namespace
 
 ResamplingKernel::ResamplingKernel(double width) {
-  constexpr double kPerTap = 512.0;          // entries: straight lines between them are off by (pi/512)^2/24 = 2e-6 at most
-  const double taps = std::max(width, 1.0);  // input intervals in one of the lower sampling frequency
+  constexpr double kPerTap = 512.0;          // entries: error of linear interpolation (pi/512)^2/24 = 2e-6 at most
+  const double taps = std::max(width, 1.0);  // input intervals per interval of the lower sampling frequency
   reach_ = kHalfTaps * taps;
   per_interval_ = kPerTap / taps;
   const IdealKernel ideal(width, taps);
   const auto entries = static_cast<std::size_t>(kHalfTaps * kPerTap);
   for (std::size_t i = 0; i <= entries; ++i)
     table_.push_back(ideal(reach_ * static_cast<double>(i) / static_cast<double>(entries)));
-  table_.push_back(0.0);  // so that the last entry has a next one
+  table_.push_back(0.0);  // so that the last entry has a successor
 }
 
 }  // namespace coast::array

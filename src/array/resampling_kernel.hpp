@@ -1,17 +1,17 @@
 #pragma once
-// Weights that make means over one interval of means over another. Private to the room.
+// Weights for means over one interval from means over another. Private to the room.
 
 #include <vector>
 
 namespace coast::array {
 
-/// Symmetric, of finite reach, read from a table.
+/// Symmetric, of finite length, interpolated from a table.
 class ResamplingKernel {
  public:
-  /// @param width  of the means to be made, in intervals of those given
+  /// @param width  of the output means, in intervals of the input
   explicit ResamplingKernel(double width);
 
-  /// In intervals of the input, from the centre to both sides.
+  /// Half length, in intervals of the input.
   [[nodiscard]] double reach() const { return reach_; }
   /// Not normalised. @param u  distance of the centres in intervals of the input, |u| <= reach
   [[nodiscard]] double operator()(double u) const {

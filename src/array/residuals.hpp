@@ -1,5 +1,5 @@
 #pragma once
-// How the sensors of one channel lie about each other at an instant. Private to the room.
+// Differences of the sensors of one channel at an instant. Private to the room.
 
 #include <span>
 
@@ -7,10 +7,10 @@
 
 namespace coast::array {
 
-/// Mean over the sensors that may be used; over all where none may.
+/// Mean over the sensors that may be used; over all if none may.
 [[nodiscard]] double plain_mean(const Signals& signals, int channel, std::size_t n);
 
-/// `own_variances` in place, for at least two.
+/// Solves for `own_variances` in place, for at least two.
 void solve_own_variances(std::span<double> variances);
 
 struct SpreadOfChange {

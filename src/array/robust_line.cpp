@@ -36,7 +36,7 @@ std::vector<double> line_residuals(const std::vector<LinePoint>& points, const R
   return residuals;
 }
 
-/// By how much the variance of a mean grows when neighbours err alike.
+/// Factor on the variance of a mean by correlation of neighbouring errors.
 double correlation_factor(const std::vector<double>& residuals, const std::vector<double>& weights) {
   double together = 0.0, squares = 0.0;
   for (std::size_t i = 0; i < residuals.size(); ++i) {
@@ -79,7 +79,7 @@ RobustLine fit_line(const std::vector<LinePoint>& points, double reference, Sigm
     const std::vector<double> residuals = line_residuals(points, fit);
     fit.scale = robust_scale(residuals, 2.0);
     if (sigmas == Sigmas::kAbsolute || points.size() == 2) fit.scale = std::max(fit.scale, 1.0);
-    if (!(fit.scale > 1e-12)) break;  // all on the line but for rounding
+    if (!(fit.scale > 1e-12)) break;  // all on the line except for rounding
     for (std::size_t i = 0; i < points.size(); ++i) {
       const double r = residuals[i] / fit.scale;
       fit.weights[i] = step < kHuberSteps ? std::min(1.0, kHuber / std::max(std::abs(r), 1e-12)) : biweight(r);

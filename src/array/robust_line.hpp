@@ -1,5 +1,5 @@
 #pragma once
-// A straight line through points of which some are wrong. Private to the room.
+// A straight line through points with outliers. Private to the room.
 
 #include <vector>
 
@@ -17,23 +17,23 @@ struct RobustLine {
   double slope = 0.0;
   double value_sigma = 0.0;
   double slope_sigma = 0.0;
-  double scale = 1.0;           ///< scatter over the sigmas given
-  std::vector<double> weights;  ///< [0, 1] per point: what the fit thinks of it
+  double scale = 1.0;           ///< scatter relative to the given sigmas
+  std::vector<double> weights;  ///< [0, 1] per point, from the fit
 
   [[nodiscard]] double at(double x) const { return value + slope * (x - reference); }
 };
 
 enum class Sigmas {
-  kRelative,  ///< only their ratios are known: the scatter sets the scale
-  kAbsolute,  ///< a scatter above them raises the standard errors, one below does not lower them
+  kRelative,  ///< only their ratios are known: the scatter determines the scale
+  kAbsolute,  ///< a larger scatter raises the standard errors, a smaller one does not lower them
 };
 
 /// M-estimate with Tukey's biweight (c = 4.685: 95 % efficient for normal errors) from a Huber start, scale by the median
-/// absolute residual. Residuals whose lag-one correlation rho is significant raise the variances by (1 + rho)/(1 - rho).
+/// absolute residual. A significant lag-one correlation rho of the residuals raises the variances by (1 + rho)/(1 - rho).
 /// @param points  in order of x, two or more with different x
 [[nodiscard]] RobustLine fit_line(const std::vector<LinePoint>& points, double reference, Sigmas sigmas);
 
-/// The biweight of standardised residuals, and their scale; both serve other linear models.
+/// The biweight of standardised residuals, and their scale; both are also used for other linear models.
 [[nodiscard]] double robust_scale(std::vector<double> standardised, double parameters);
 [[nodiscard]] double biweight(double standardised);
 

@@ -11,8 +11,8 @@ namespace coast::array {
 
 namespace {
 
-constexpr std::size_t kSmoothed = 32;  // tags to both sides: a clock is taken for straight over these
-constexpr std::size_t kNodes = 3;      // tags to both sides through which increments are read
+constexpr std::size_t kSmoothed = 32;  // tags to both sides: a clock is assumed linear over these
+constexpr std::size_t kNodes = 3;      // tags to both sides used for interpolation of increments
 constexpr double kGap = 1.5;           // intervals
 constexpr double kExact = 2e-6;        // of an interval: the rounding of tags to 1 ns
 
@@ -35,7 +35,7 @@ double median_interval(const record::ImuRecording& recording) {
   return *middle;
 }
 
-/// A sample over a long interval is a gap, too: what happened within it is not known.
+/// A sample over a long interval is a gap, too: the motion within it is unknown.
 std::vector<RawRun> raw_runs(const record::ImuRecording& recording, geo::GpsTime origin, const LagOfTag& lag) {
   const double longest = kGap * median_interval(recording);
   std::vector<RawRun> runs;
@@ -73,7 +73,7 @@ std::vector<double> moving_mean(const std::vector<double>& values) {
   return means;
 }
 
-/// Tags without their jitter: even spacing and twice the moving mean of the rest, so that neighbouring intervals hardly differ.
+/// Tags without jitter: even spacing plus twice the moving mean of the remainder, so that adjacent intervals hardly differ.
 std::vector<double> smoothed(const std::vector<double>& tags) {
   const std::size_t n = tags.size();
   const double interval = (tags.back() - tags.front()) / static_cast<double>(n - 1);
@@ -82,12 +82,12 @@ std::vector<double> smoothed(const std::vector<double>& tags) {
   const std::vector<double> slow = moving_mean(moving_mean(uneven));
   for (std::size_t k = 0; k < n; ++k) {
     smooth[k] = tags[k] + (slow[k] - uneven[k]);
-    if (k > 0 && !(smooth[k] > smooth[k - 1])) return tags;  // no clock that could be told from its jitter
+    if (k > 0 && !(smooth[k] > smooth[k - 1])) return tags;  // jitter too large to find the clock
   }
   return smooth;
 }
 
-/// Integral from tag k to `instant`, by the polynomial through the cumulative increments at the tags around.
+/// Integral from tag k to `instant`, by the polynomial through the cumulative increments at the surrounding tags.
 Channels integral_from_tag(const RawRun& run, std::size_t k, double instant) {
   std::array<Channels, 2 * kNodes + 1> cumulative;
   cumulative[kNodes].setZero();

@@ -1,5 +1,5 @@
 #pragma once
-// Stretches of a recording without gaps, on smooth times. Private to the room.
+// Stretches of a recording without gaps, with smoothed times. Private to the room.
 
 #include <vector>
 
@@ -7,7 +7,7 @@
 
 namespace coast::array {
 
-/// Means of rates and specific forces over intervals that follow each other.
+/// Means of rates and specific forces over consecutive intervals.
 struct SampledRun {
   std::vector<double> edges;  ///< s since the grid's start, increasing; one more than means
   Eigen::Matrix<double, kChannels, Eigen::Dynamic> means;

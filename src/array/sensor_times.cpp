@@ -10,10 +10,10 @@ namespace coast::array {
 
 namespace {
 
-constexpr std::size_t kFewestPackets = 60;  // that fit_clock takes
+constexpr std::size_t kFewestPackets = 60;  // required by fit_clock
 
-/// Samples of one segment, tagged by its clock. An interval reaches back to the sample before, or is one of the clock's where
-/// that was lost.
+/// Samples of one segment, with the times of its clock. An interval begins at the sample before, or has the clock's length if
+/// that sample was lost.
 void append(const record::PacketRecording& packets, const PacketSegment& segment, double interval, const ClockFit& clock,
             int week, record::ImuRecording& imu) {
   for (const record::Packet& packet : segment.packets) {

@@ -14,7 +14,7 @@ namespace coast::array {
 
 namespace {
 
-/// What is known of every sensor's noise before a sample: what it is expected to be, and its own variance. K x N.
+/// Prediction of every sensor's noise before a sample: its expectation and its own variance. K x N.
 struct Expectation {
   Eigen::MatrixXd mean;
   Eigen::MatrixXd variance;
@@ -28,7 +28,7 @@ Eigen::MatrixXd errors_of(const Signals& signals, int channel, const std::option
   return y;
 }
 
-/// One sensor's residuals as the series that its model is fitted to.
+/// One sensor's residuals as the series for the fit of its model.
 struct OwnSeries {
   std::vector<double> y;
   std::vector<std::uint8_t> is_missing;
@@ -80,7 +80,7 @@ void predict(const noise::ArmaGarch& model, const OwnSeries& series, Eigen::Inde
   }
 }
 
-/// From residuals' variances to the sensors' own, sample by sample.
+/// From the variances of residuals to those of the sensors, sample by sample.
 void solve_own(const Signals& signals, int channel, Eigen::MatrixXd& variance) {
   std::vector<double> present;
   std::vector<Eigen::Index> who;
@@ -116,7 +116,7 @@ Expectation garch_expectation(const Signals& signals, int channel, const MergeOp
   return expected;
 }
 
-/// The measured noise, the same within a block.
+/// The measured noise, constant within a block.
 Expectation measured_expectation(const NoiseOverTime& noise, Eigen::Index samples) {
   Expectation expected{Eigen::MatrixXd::Zero(noise.variance.rows(), samples), Eigen::MatrixXd(noise.variance.rows(), samples)};
   for (Eigen::Index n = 0; n < samples; ++n)
@@ -125,7 +125,7 @@ Expectation measured_expectation(const NoiseOverTime& noise, Eigen::Index sample
   return expected;
 }
 
-/// Variances that the weights are made of: equal, constant or as expected for the sample.
+/// Variances used for the weights: equal, constant or predicted for the sample.
 Eigen::VectorXd variances_for_weights(const MergeOptions& options, int channel, const Eigen::VectorXd& mean_variance,
                                       const Eigen::Ref<const Eigen::VectorXd>& expected) {
   switch (options.merge) {
@@ -155,7 +155,7 @@ void merge_samples(const Signals& signals, int channel, const MergeOptions& opti
     weight = variances_for_weights(options, channel, mean_variance, expected.variance.col(n)).cwiseInverse();
     for (Eigen::Index k = 0; k < sensors; ++k)
       if (!signals.sensors[static_cast<std::size_t>(k)].may_use(channel, static_cast<std::size_t>(n))) weight(k) = 0.0;
-    if (!(weight.sum() > 0.0) || !std::isfinite(weight.sum())) {  // nobody, or no noise at all: what is there counts alike
+    if (!(weight.sum() > 0.0) || !std::isfinite(weight.sum())) {  // no sensor, or no noise at all: equal weights
       merged.value(n) = plain_mean(signals, channel, static_cast<std::size_t>(n));
       merged.variance(n) = expected.variance.col(n).mean();
       continue;
@@ -170,7 +170,7 @@ void merge_samples(const Signals& signals, int channel, const MergeOptions& opti
   }
 }
 
-/// Means over the blocks of the measured noise.
+/// Means over the blocks of the noise measurement.
 Eigen::MatrixXd block_means_of(const Eigen::MatrixXd& values, const NoiseOverTime& noise) {
   Eigen::MatrixXd means(values.rows(), noise.variance.cols());
   const auto block = static_cast<Eigen::Index>(noise.block);
@@ -196,7 +196,7 @@ MergedChannel merge_channel(const Signals& signals, int channel, const MergeOpti
   const auto samples = static_cast<Eigen::Index>(signals.samples());
   const bool wanted = options.merge == Merge::kGarch || options.merge == Merge::kCorrected;
   const Eigen::MatrixXd y = wanted ? errors_of(signals, channel, reference) : Eigen::MatrixXd();
-  const bool models = wanted && (y.rowwise().squaredNorm().array() > 0.0).all();  // without noise there is nothing to model
+  const bool models = wanted && (y.rowwise().squaredNorm().array() > 0.0).all();  // without noise no model can be fitted
   const Expectation expected = models ? garch_expectation(signals, channel, options, y, reference.has_value(), merged)
                                       : measured_expectation(merged.noise, samples);
   merge_samples(signals, channel, options, expected, merged);

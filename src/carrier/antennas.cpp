@@ -13,7 +13,7 @@ namespace {
 using record::PhaseCentre;
 using record::SatelliteSystem;
 
-/// The band's own, or that of the nearest frequency of GPS.
+/// Calibration of the band, or of the nearest frequency of GPS.
 const PhaseCentre* centre_of(const record::AntennaCalibration& antenna, SatelliteSystem system, char band) {
   const auto own = antenna.bands.find({system, band});
   if (own != antenna.bands.end()) return &own->second;
@@ -32,7 +32,7 @@ const PhaseCentre* centre_of(const record::AntennaCalibration& antenna, Satellit
   return nearest;
 }
 
-/// Where a value lies between the rows or columns of a table.
+/// Position of a value between the rows or columns of a table.
 struct Between {
   std::size_t first = 0, second = 0;
   double weight = 0.0;  ///< of the second

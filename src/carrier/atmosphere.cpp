@@ -44,7 +44,7 @@ double klobuchar_delay(const record::Klobuchar& model, const geo::Geodetic& rece
                        geo::GpsTime t) {
   constexpr double kLight = 299792458.0;
   constexpr double kDay = 86400.0;
-  // Angles in semicircles, as the model was published.
+  // Angles in semicircles, as in the published model.
   const double elevation = direction.elevation / geo::kPi;
   const double central = 0.0137 / (elevation + 0.11) - 0.022;
   const double latitude = std::clamp(receiver.latitude / geo::kPi + central * std::cos(direction.azimuth), -0.416, 0.416);
@@ -70,7 +70,7 @@ TroposphericMapping niell_mapping(const geo::Geodetic& receiver, double elevatio
     throw std::invalid_argument(fmt::format("niell_mapping: an elevation of {:.2f} degrees", elevation / geo::kDegree));
   const geo::Calendar date = t.calendar();
   const double day = (t - geo::GpsTime::from_calendar({date.year, 1, 1, 0, 0, 0.0})) / 86400.0 + 1.0;
-  constexpr double kColdest = 28.0;  // day of the year in the north
+  constexpr double kColdest = 28.0;  // day of year in the north
   const double season = std::cos(2.0 * geo::kPi * (day - kColdest) / 365.25) * (receiver.latitude < 0.0 ? -1.0 : 1.0);
   const auto hydrostatic = [&](const Column Coefficients::*column) {
     return at_latitude(kAverage.*column, receiver.latitude) - season * at_latitude(kAmplitude.*column, receiver.latitude);

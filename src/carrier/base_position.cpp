@@ -24,7 +24,7 @@ Eigen::Vector3d antenna(const ObservationRecording& receiver, const Eigen::Vecto
   return r_marker_e + geo::C_n_e(geo::geodetic_from_ecef(r_marker_e)) * Eigen::Vector3d(enu.y(), enu.x(), -enu.z());
 }
 
-/// Where a receiver is by itself, epoch by epoch.
+/// Single-point positions of a receiver, by epoch.
 Positions own_positions(const ObservationRecording& receiver, const Orbits& orbits, const DifferenceOptions& options) {
   Positions positions;
   const auto points = single_points(receiver, orbits, options);
@@ -40,7 +40,7 @@ KnownBase at_rest(const Eigen::Vector3d& r_e, std::string from) {
   return {[r_e](geo::GpsTime) { return std::optional(r_e); }, r_e, std::move(from)};
 }
 
-/// A day of a decimal year is known to half of one: a twentieth of a millimetre where plates move 4 cm a year.
+/// A decimal year gives the date to half a day: a twentieth of a millimetre for plate motion of 4 cm a year.
 double decimal_year(geo::GpsTime t) {
   constexpr double kYear = 365.25 * 86400.0;
   return 1980.0137 + (t - geo::GpsTime::from_week(0, 0.0)) / kYear;
@@ -54,7 +54,7 @@ KnownBase in_orbits_frame(const Eigen::Vector3d& r_e, const BaseAt::Datum& datum
                              (moved_e - r_e).norm(), target.frame, target.year));
 }
 
-/// Up to 30 epochs, spread over the file. The header's position is no start of theirs: it may be what is wrong.
+/// Up to 30 epochs, spread over the file. The header's position is not their start value: it may be wrong.
 ObservationRecording sample_of(const ObservationRecording& base) {
   constexpr std::size_t kEpochs = 30;
   ObservationRecording sample;
@@ -65,7 +65,7 @@ ObservationRecording sample_of(const ObservationRecording& base) {
   return sample;
 }
 
-/// The value that a share of them does not exceed.
+/// The value not exceeded by a given fraction.
 double quantile(std::vector<double> values, double share) {
   const auto at = values.begin() + std::lround(share * static_cast<double>(values.size() - 1));
   std::ranges::nth_element(values, at);
@@ -82,13 +82,13 @@ std::vector<SinglePoint> sampled_points(const ObservationRecording& base, const 
   return points;
 }
 
-/// What the base's codes say of where it is, N, E, D.
+/// Position of the base from its codes, N, E, D.
 struct OwnPosition {
   geo::LocalFrame frame;
   std::size_t epochs = 0;
   Eigen::Vector3d median_n, sd_n;  ///< m
   double spread = 0.0;             ///< horizontal, between the outer tenths of the positions, m
-  double spread_sd = 0.0;          ///< that the sigmas of the positions let expect, m
+  double spread_sd = 0.0;          ///< the same as expected by the sigmas of the positions, m
 };
 
 std::optional<OwnPosition> own_position(const ObservationRecording& base, const Orbits& orbits,
@@ -124,7 +124,7 @@ std::string metres(double distance) {
   return distance < 10e3 ? fmt::format("{:.1f} m", distance) : fmt::format("{:.0f} km", 1e-3 * distance);
 }
 
-/// A receiver that is said to be at rest, and is not.
+/// A receiver stated to be at rest that moves.
 std::optional<record::Event> motion_of(const OwnPosition& own, const ObservationRecording& receiver, const char* code,
                                        const std::string& what, const std::string& what_to_do) {
   constexpr double kDoubtful = 30.0, kUnmistakable = 50.0;  // m
@@ -137,9 +137,9 @@ std::optional<record::Event> motion_of(const OwnPosition& own, const Observation
                        std::nullopt, 1};
 }
 
-/// Geodetic coordinates given otherwise than in degrees, latitude first.
+/// Geodetic coordinates stated in other units than degrees, or in another order.
 std::string order_in_words(const Eigen::Vector3d& stated_e, const Eigen::Vector3d& own_e) {
-  constexpr double kFits = 20e3;  // m: radians with four figures
+  constexpr double kFits = 20e3;  // m: radians with four digits
   constexpr double kRightAngle = 0.5 * std::numbers::pi;
   const auto fits = [&](double latitude, double longitude, double height) {
     return std::abs(latitude) <= kRightAngle && std::abs(longitude) <= 2.0 * kRightAngle &&
@@ -152,7 +152,7 @@ std::string order_in_words(const Eigen::Vector3d& stated_e, const Eigen::Vector3
   return "";
 }
 
-/// "With the sign of y changed it fits", where another sign of some coordinates, or another order or unit does.
+/// "With the sign of y changed it fits", if other signs of some coordinates, or another order or unit fit.
 std::string mistake_in_words(const Eigen::Vector3d& stated_e, const Eigen::Vector3d& own_e) {
   constexpr double kFits = 1e3;  // m
   constexpr std::array kNames{"", "x", "y", "x and y", "z", "x and z", "y and z", "x, y and z"};

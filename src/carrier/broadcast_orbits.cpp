@@ -21,7 +21,7 @@ double validity(SatelliteSystem system) {
     case SatelliteSystem::kGalileo:
       return 4.0 * kHour;
     case SatelliteSystem::kBeidou:
-      return kHour + 60.0;  // sent hourly
+      return kHour + 60.0;  // transmitted hourly
     case SatelliteSystem::kGlonass:
       return 0.25 * kHour + 60.0;
     case SatelliteSystem::kSbas:
@@ -38,20 +38,20 @@ geo::GpsTime time_of(const TabulatedEphemeris& e) {
   return e.t;
 }
 
-/// How far from its reference an ephemeris is used, s. That of GPS is fitted to both sides; those of Galileo and BeiDou
-/// foretell, and before their reference they are soon tens of metres off: an hour there counts as four.
+/// Effective distance of an ephemeris from its reference, s. That of GPS is fitted to both sides; those of Galileo and BeiDou
+/// are predictions, and before their reference soon wrong by tens of metres: an hour there counts as four.
 double age(SatelliteSystem system, double since_reference) {
   constexpr double kBackward = 4.0;
   const bool foretells = system == SatelliteSystem::kGalileo || system == SatelliteSystem::kBeidou;
   return foretells && since_reference < 0.0 ? -kBackward * since_reference : std::abs(since_reference);
 }
 
-/// I/NAV carries the group delay of E5b and E1 and is what most receivers use: bits 0 and 2 of the sources.
+/// I/NAV has the group delay of E5b and E1 and is used by most receivers: bits 0 and 2 of the sources.
 bool is_inav(const KeplerEphemeris& e) {
   return (e.sources & 5) != 0;
 }
 
-/// The youngest; of those as young the preferred one.
+/// The closest in time; among equals the preferred one.
 template <class Ephemeris, class Preferred>
 const Ephemeris* nearest_valid(const std::map<Satellite, std::vector<Ephemeris>>& all, Satellite satellite, geo::GpsTime t,
                                const Preferred& preferred) {
@@ -77,14 +77,14 @@ BroadcastOrbits::BroadcastOrbits(const record::NavigationRecording& navigation) 
   for (const TabulatedEphemeris& e : navigation.tabulated)
     if (e.health == 0) tabulated_[e.satellite].push_back(e);
   for (auto& [satellite, ephemerides] : kepler_) {
-    leave_out_strangers(satellite, ephemerides);  // an unhealthy neighbour can tell
+    leave_out_strangers(satellite, ephemerides);  // an unhealthy neighbour is useful for this check
     std::erase_if(ephemerides, [](const KeplerEphemeris& e) { return e.health != 0; });
   }
 }
 
 void BroadcastOrbits::leave_out_strangers(Satellite satellite, std::vector<KeplerEphemeris>& ephemerides) {
-  constexpr double kFar = 1e5;           // m: beyond any aged ephemeris
-  constexpr double kTogether = 43200.0;  // s: half a day; further apart they say nothing of each other
+  constexpr double kFar = 1e5;           // m: beyond the error of any old ephemeris
+  constexpr double kTogether = 43200.0;  // s: half a day; further apart they cannot be compared
   const auto apart = [&](const KeplerEphemeris& a, const KeplerEphemeris& b) {
     const geo::GpsTime middle = a.toe + 0.5 * (b.toe - a.toe);
     return (satellite_state(a, middle).r_e - satellite_state(b, middle).r_e).norm() > kFar;

@@ -16,12 +16,12 @@ bool has_baseline(const PpkEpoch& epoch) {
 /// The three components within 99.9 %.
 bool agree(const Eigen::Vector3d& difference, const Eigen::Matrix3d& covariance) {
   constexpr double kChiSquare = 16.27;
-  constexpr double kAlways = 0.005;  // m: both share the noise of the epoch, which the sum of covariances has twice
+  constexpr double kAlways = 0.005;  // m: both have the noise of the epoch in common, which the sum of covariances has twice
   return difference.norm() < kAlways || difference.dot(covariance.inverse() * difference) < kChiSquare;
 }
 
-/// The passes contradict each other, and nothing says which is right: the covariance spans both. A decimetre apart they cannot
-/// both have the integers.
+/// The passes contradict each other, and it is unknown which is right: the covariance covers both. If a decimetre apart they
+/// cannot both have the right integers.
 PpkEpoch separated(PpkEpoch likelier, const Eigen::Vector3d& difference) {
   constexpr double kDecimetre = 0.1;
   likelier.covariance_e += difference * difference.transpose();
@@ -47,7 +47,7 @@ PpkEpoch combine(const PpkEpoch& f, const PpkEpoch& b) {
                              : f_fixed          ? (f.fixed_ambiguities >= b.fixed_ambiguities ? f : b)
                                                 : (f.covariance_e.trace() < b.covariance_e.trace() ? f : b);
   PpkEpoch both;
-  // Multipath makes floats twice as wrong as they say for a while: against a fix they speak only where that is not enough.
+  // Multipath makes float errors temporarily twice their sigmas: they contradict a fix only beyond that.
   constexpr double kFloatVariance = 4.0;
   const double doubt_f = f_fixed || !b_fixed ? 1.0 : kFloatVariance, doubt_b = b_fixed || !f_fixed ? 1.0 : kFloatVariance;
   if (!agree(difference, doubt_f * f.covariance_e + doubt_b * b.covariance_e))

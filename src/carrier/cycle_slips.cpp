@@ -17,12 +17,12 @@ double median(std::vector<double> values) {
   return *middle;
 }
 
-/// Deviations of an epoch, less what all have in common (clocks), over their bounds.
+/// Deviations of an epoch, minus their common part (clocks), relative to their bounds.
 class Deviations {
  public:
   void add(const Key& key, double value, double bound) { all_.push_back({key, value, bound}); }
 
-  /// Those beyond their bounds; where the whole epoch is worse than the bounds say, those that stand out.
+  /// Those beyond their bounds; if the whole epoch is worse than the bounds, those much larger than the median.
   [[nodiscard]] std::set<Key> beyond() const {
     constexpr std::size_t kEnough = 4;
     constexpr double kStandsOut = 4.0;  // times the median
@@ -46,24 +46,24 @@ class Deviations {
   std::vector<Deviation> all_;
 };
 
-/// What was seen of each phase last.
+/// Last observation of each phase.
 struct Before {
   geo::GpsTime t;
   double phase = 0.0;  ///< m
   std::optional<double> rate;
-  int given = 0;  ///< the arc's number as it came
-  int arc = 0;    ///< as it is numbered now
+  int given = 0;  ///< original number of the arc
+  int arc = 0;    ///< new number
 };
 using Phases = std::map<Key, Before>;
 
-/// Jump of the difference of two phases beyond which one of them slipped, m. One cycle of any band is 19 cm or more; noise and
-/// multipath come to 2 cm (four sigma) at the zenith, the ionosphere over a baseline changes by less than 0.3 mm/s.
+/// Jump of the difference of two phases above which one of them slipped, m. One cycle of any band is 19 cm or more; noise and
+/// multipath are 2 cm (four sigma) at the zenith, the ionosphere over a baseline changes by less than 0.3 mm/s.
 double largest_jump(double step, double elevation) {
   constexpr double kNoise = 0.02, kIonosphere = 0.0003, kMost = 0.12;
   return std::min(kNoise / std::max(std::sin(elevation), 0.1) + kIonosphere * step, kMost);
 }
 
-/// The first phase of each satellite that is not new is held against the others.
+/// Compares the first phase of each satellite that is not new with the others.
 std::set<Key> geometry_free(const DifferenceEpoch& epoch, const Phases& before) {
   std::set<Key> slipped;
   for (const SatelliteDifference& satellite : epoch.satellites) {
@@ -89,7 +89,7 @@ std::set<Key> geometry_free(const DifferenceEpoch& epoch, const Phases& before) 
 std::set<Key> by_doppler(const DifferenceEpoch& epoch, const Phases& before) {
   constexpr double kLongest = 2.0;  // s
   constexpr double kNoise = 0.15;   // m/s at the zenith: four sigma of two receivers
-  constexpr double kJerk = 0.5;     // m/s^3 / 12: by which the mean of both ends may miss that between
+  constexpr double kJerk = 0.5;     // m/s^3 / 12: for the difference between the mean of both ends and the mean rate
   Deviations deviations;
   for (const SatelliteDifference& satellite : epoch.satellites)
     for (const BandDifference& band : satellite.bands) {
@@ -105,7 +105,7 @@ std::set<Key> by_doppler(const DifferenceEpoch& epoch, const Phases& before) {
   return deviations.beyond();
 }
 
-/// Wide-lane cycles of the first two bands with code and phase: their ambiguities' difference, noise and multipath of codes.
+/// Wide-lane cycles of the first two bands with code and phase: difference of their ambiguities, noise and multipath of codes.
 struct WideLane {
   Key first, second;
   int first_arc = 0, second_arc = 0;
@@ -127,9 +127,9 @@ std::optional<WideLane> wide_lane(const SatelliteDifference& satellite) {
 /// Means of wide lanes along the arcs.
 class MelbourneWuebbena {
  public:
-  /// @param next  the epoch after, which must confirm; null: none
+  /// @param next  the following epoch, which must confirm; null: none
   std::set<Key> slips(const DifferenceEpoch& epoch, const DifferenceEpoch* next) {
-    constexpr double kConfirmed = 1.0;  // cycle, between two epochs behind a slip
+    constexpr double kConfirmed = 1.0;  // cycle, between two epochs after a slip
     const Deviations now = deviations(epoch), then = next == nullptr ? Deviations{} : deviations(*next);
     const std::set<Key> left = now.beyond(), confirmed = then.beyond();
     std::set<Key> slipped;
@@ -154,7 +154,7 @@ class MelbourneWuebbena {
     int count = 0;
   };
 
-  /// From the means that are settled.
+  /// From the converged means.
   [[nodiscard]] Deviations deviations(const DifferenceEpoch& epoch) const {
     constexpr int kSettled = 10;
     constexpr double kSigmas = 4.0;
@@ -189,7 +189,7 @@ class MelbourneWuebbena {
   std::map<Key, Mean> means_;
 };
 
-/// Numbers anew what is new or has slipped.
+/// Gives new numbers to new arcs and after slips.
 class ArcNumbers {
  public:
   void number(DifferenceEpoch& epoch, const std::set<Key>& slipped) {

@@ -1,20 +1,20 @@
 #pragma once
-// Where phases slip although no receiver says so. Private to the room.
+// Detection of cycle slips not flagged by the receivers. Private to the room.
 
 #include "coast/carrier/differences.hpp"
 
 namespace coast::carrier {
 
-/// Numbers the arcs of the differences anew: a new one wherever the number changes that stands in `arc`, and where one of
-/// three tests says that a phase slipped, each blind to what another sees:
+/// Renumbers the arcs of the differences: a new one if `arc` changes, and if one of three complementary tests detects a
+/// slip:
 ///
 /// - geometry-free (Blewitt 1990): the difference of two bands' phases jumps from one epoch to the next by more than noise and
-///   ionosphere do; of receivers near to each other the ionosphere is mostly gone. Blind to 9 cycles of L1 with 7 of L2.
-/// - Melbourne (1985), Wuebbena (1985): the wide lane of phases less the narrow lane of codes leaves its mean for two epochs;
+///   ionosphere; for close receivers the ionosphere mostly cancels. Blind to 9 cycles of L1 with 7 of L2.
+/// - Melbourne (1985), Wuebbena (1985): the wide lane of phases minus the narrow lane of codes leaves its mean for two epochs;
 ///   blind to equal slips of both bands.
-/// - Doppler: a phase moves by other than the mean of the Doppler at both epochs; for single bands too, at 2 s or less.
+/// - Doppler: the change of a phase differs from the mean Doppler of both epochs; for single bands too, at 2 s or less.
 ///
-/// What is left is for the filter's tests.
+/// Remaining slips are left to the filter's tests.
 void break_arcs(std::vector<DifferenceEpoch>& epochs);
 
 }  // namespace coast::carrier

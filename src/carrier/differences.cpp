@@ -14,11 +14,11 @@ namespace {
 
 using record::Satellite;
 
-/// What the base's observations of one satellite differ from the model at its position.
+/// Base observations of one satellite minus the model at the base's position.
 struct BaseSatellite {
   Satellite satellite;
   double elevation = 0.0;
-  std::vector<TrackedBand> bands;  ///< code and phase less the model
+  std::vector<TrackedBand> bands;  ///< code and phase minus the model
 };
 
 struct BaseEpoch {
@@ -27,7 +27,7 @@ struct BaseEpoch {
   std::vector<BaseSatellite> satellites;
 };
 
-/// Of a base that moves, from where it is half a second before and after.
+/// Velocity of a moving base, from its positions half a second before and after.
 std::optional<Eigen::Vector3d> velocity_of(const BasePosition& position, geo::GpsTime t) {
   constexpr double kHalf = 0.5;
   const std::optional<Eigen::Vector3d> before = position(t - kHalf), after = position(t + kHalf);
@@ -35,15 +35,15 @@ std::optional<Eigen::Vector3d> velocity_of(const BasePosition& position, geo::Gp
   return (*after - *before) / (2.0 * kHalf);
 }
 
-/// By how much the ground lifts the base more than the rover: coordinates are of an Earth without tides. Over short baselines
-/// both rise alike, by a tenth of a millimetre a kilometre.
+/// Solid tide of the base minus that of the rover: coordinates are of an Earth without tides. Over short baselines
+/// it differs by a tenth of a millimetre per kilometre.
 Eigen::Vector3d lifted(const Eigen::Vector3d& r_base_e, const std::optional<Eigen::Vector3d>& r_rover_e, geo::GpsTime t) {
   constexpr double kMatters = 10e3;  // m
   if (!r_rover_e || (r_base_e - *r_rover_e).norm() < kMatters) return Eigen::Vector3d::Zero();
   return solid_tide(r_base_e, t) - solid_tide(*r_rover_e, t);
 }
 
-/// @param r_rover_e  about
+/// @param r_rover_e  approximate
 std::vector<BaseEpoch> residuals_of(const std::vector<TrackedEpoch>& base, const BasePosition& position,
                                     const std::optional<Eigen::Vector3d>& r_rover_e, const DifferenceOptions& options) {
   std::vector<BaseEpoch> epochs;
@@ -80,7 +80,7 @@ class BaseInterpolation {
  public:
   BaseInterpolation(std::vector<BaseEpoch> epochs, double longest_gap) : epochs_(std::move(epochs)), gap_(longest_gap) {}
 
-  /// Its epochs at and around an instant; the second with weight w, none where the first is at the same time.
+  /// Its epochs before and after an instant; the second with weight w, none if the first is at the same time.
   struct Pair {
     const BaseEpoch* first = nullptr;
     const BaseEpoch* second = nullptr;
@@ -88,7 +88,7 @@ class BaseInterpolation {
     double age = 0.0;
   };
   Pair around(geo::GpsTime t) const {
-    constexpr double kSame = 0.05;  // s: receivers' clocks are off by milliseconds
+    constexpr double kSame = 0.05;  // s: receivers' clock errors are milliseconds
     Pair pair;
     const auto after = std::ranges::lower_bound(epochs_, t - kSame, {}, &BaseEpoch::t);
     if (after == epochs_.end()) return pair;
@@ -114,7 +114,7 @@ class BaseInterpolation {
     return found == satellite.bands.end() ? nullptr : &*found;
   }
 
-  /// One satellite; without bands where it is not there.
+  /// One satellite; without bands if it is missing.
   static BaseSatellite satellite_at(const Pair& pair, Satellite satellite) {
     const BaseSatellite* first = find(*pair.first, satellite);
     if (first == nullptr) return {};
@@ -171,7 +171,7 @@ std::vector<BandDifference> bands_of(const TrackedSatellite& rover, const BaseSa
   return bands;
 }
 
-/// The rover by itself.
+/// The rover only.
 std::vector<DifferenceEpoch> rover_alone(const std::vector<TrackedEpoch>& tracked, const std::optional<Eigen::Vector3d>& near_e,
                                          const DifferenceOptions& options) {
   std::vector<DifferenceEpoch> epochs;

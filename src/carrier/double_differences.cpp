@@ -15,7 +15,7 @@ namespace {
 
 constexpr double kCodeToPhase = 100.0;  // sd of a code over that of its phase
 
-/// Thermal noise, multipath and what the models of the air leave, m^2.
+/// Thermal noise, multipath and residual errors of the atmosphere models, m^2.
 double phase_variance(double elevation, double cn0) {
   constexpr double kFloor = 0.002;    // m, at the zenith as much again
   constexpr double kThermal = 0.001;  // m at 45 dB-Hz
@@ -27,7 +27,7 @@ double phase_variance(double elevation, double cn0) {
 
 using ClockGroup = std::tuple<Observable, record::SatelliteSystem, char>;
 
-/// One observation on its way into the matrices.
+/// One observation before it is added to the matrices.
 struct Candidate {
   ClockGroup group;
   Row row;
@@ -50,18 +50,18 @@ double rate_variance(double elevation) {
   return sd * sd;
 }
 
-/// Where an antenna of this attitude has the satellite: azimuth from its own forward.
+/// Direction of the satellite for an antenna of this attitude: azimuth from the antenna's forward axis.
 Direction seen_by(const Eigen::Matrix3d& C_b_e, const Eigen::Vector3d& to_satellite_e) {
   const Eigen::Vector3d way_b = C_b_e.transpose() * to_satellite_e;
   return {std::atan2(way_b.y(), way_b.x()), std::asin(std::clamp(-way_b.z(), -1.0, 1.0))};
 }
 
-/// Place of the velocity in a state; -1: it has none.
+/// Index of the velocity in a state; -1: none.
 Eigen::Index velocity_in(const RelativeState& state) {
   return state.index(kVelocityUnknowns.front());
 }
 
-/// What a state expects, and how it weighs what it gets.
+/// Prediction from a state, and weights of the observations.
 class Expectation {
  public:
   Expectation(const DifferenceEpoch& epoch, const RelativeState& state, const DifferenceOptions& options,
@@ -94,7 +94,7 @@ class Expectation {
       double expected = path.modelled(satellite.state);
       if (options_.rover_antenna)
         expected += phase_centre_correction(*options_.rover_antenna, satellite.satellite.system, band.band, at_antenna);
-      const bool started = state_.index({Kind::kAmbiguity, satellite.satellite, band.band, band.arc}) >= 0;  // by a code
+      const bool started = state_.index({Kind::kAmbiguity, satellite.satellite, band.band, band.arc}) >= 0;  // from a code
       if (band.code) candidate(Observable::kCode, code_scale(satellite, band, weighting_) * sd, *band.code - expected);
       if (band.phase && started)
         candidate(Observable::kPhase, weighting_.noise.phase * sd, *band.phase - expected - wound * band.wavelength());
@@ -107,7 +107,7 @@ class Expectation {
   }
 
  private:
-  /// What rows with the same have in common.
+  /// Rows with equal values share a clock.
   [[nodiscard]] ClockGroup clock_of(Observable observable, record::SatelliteSystem system, char band) const {
     const bool one = observable == Observable::kRate || (observable == Observable::kPhase && weighting_.one_phase_clock);
     return one ? ClockGroup{observable, record::SatelliteSystem::kGps, '0'} : ClockGroup{observable, system, band};
@@ -136,7 +136,7 @@ void fill(const Candidate& c, const DifferenceEpoch& epoch, const RelativeState&
   const SatelliteDifference& satellite = epoch.satellites[c.row.satellite];
   const BandDifference& band = satellite.bands[c.row.band];
   const double weight = 1.0 / c.row.sd;
-  if (c.row.observable == Observable::kRate) {  // what turns with the position, 0.2 mm/s a metre, is nothing
+  if (c.row.observable == Observable::kRate) {  // the dependence on position, 0.2 mm/s per metre, is neglected
     dd.H.block<1, 3>(i, velocity_in(state)) = -weight * c.path.to_satellite_e.transpose();
     dd.residual(i) = weight * c.residual;
     return;
@@ -159,8 +159,8 @@ void fill(const Candidate& c, const DifferenceEpoch& epoch, const RelativeState&
   dd.residual(i) = weight * residual;
 }
 
-/// Columns of what a group of rows knows nothing of: the clock; of phases that share one, and of their rates, also the
-/// antenna's turn about the vertical, a cycle of each (wind_up).
+/// Columns of a group's nuisance parameters: the clock; for phases that share one, and for their rates, also the
+/// antenna's rotation about the vertical, a cycle of each (wind_up).
 Eigen::MatrixXd nuisances(std::span<const Row> rows, const DifferenceEpoch& epoch, const Weighting& weighting) {
   const bool turns = weighting.one_phase_clock && rows.front().observable != Observable::kCode;
   Eigen::MatrixXd columns(rows.size(), turns ? 2 : 1);
@@ -173,7 +173,7 @@ Eigen::MatrixXd nuisances(std::span<const Row> rows, const DifferenceEpoch& epoc
   return columns;
 }
 
-/// Orthonormal rows that are blind to the columns, by Householder's reflections.
+/// Orthonormal rows orthogonal to the columns, by Householder's reflections.
 Eigen::MatrixXd complement(const Eigen::MatrixXd& columns) {
   const Eigen::ColPivHouseholderQR<Eigen::MatrixXd> qr(columns);
   const Eigen::MatrixXd Q = qr.householderQ();

@@ -9,9 +9,9 @@ namespace coast::carrier {
 
 namespace {
 
-/// Symmetric, and positive definite whatever rounding has left.
+/// Symmetric, and positive definite in spite of rounding.
 Eigen::Matrix3d in_n(const Eigen::Matrix3d& covariance_e, const Eigen::Matrix3d& C_n_e) {
-  constexpr double kLeast = 1e-8;  // m^2: a tenth of a millimetre, what files print
+  constexpr double kLeast = 1e-8;  // m^2: a tenth of a millimetre, resolution of files
   const Eigen::Matrix3d P = C_n_e.transpose() * covariance_e * C_n_e;
   const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> eigen(0.5 * (P + P.transpose()));
   return eigen.eigenvectors() * eigen.eigenvalues().cwiseMax(kLeast).asDiagonal() * eigen.eigenvectors().transpose();

@@ -38,7 +38,7 @@ std::vector<Fixable> fixable(const DifferenceEpoch& epoch, const FloatEpoch& upd
   return all;
 }
 
-/// Double differences of a set of ambiguities: against the highest satellite of each system and band.
+/// Double differences of a set of ambiguities: relative to the highest satellite of each system and band.
 Eigen::MatrixXd differencing(const std::vector<Fixable>& set, Eigen::Index states) {
   std::map<std::pair<SatelliteSystem, char>, std::vector<const Fixable*>> groups;
   for (const Fixable& f : set) groups[{f.satellite.system, f.band}].push_back(&f);
@@ -56,7 +56,7 @@ Eigen::MatrixXd differencing(const std::vector<Fixable>& set, Eigen::Index state
   return D;
 }
 
-/// The rows of D by name.
+/// The rows of D as named pairs.
 std::vector<FixedPair> pairs_of(const Eigen::MatrixXd& D, const RelativeState& state, const Eigen::VectorXd& integers) {
   std::vector<FixedPair> pairs;
   for (Eigen::Index row = 0; row < D.rows(); ++row) {
@@ -134,14 +134,14 @@ std::vector<Satellite> by_elevation(const std::vector<Fixable>& set) {
   return satellites;
 }
 
-/// Partial fixing. At least half of the ambiguities stay: few integers that stand out are often wrong.
+/// Partial fixing. At least half of the ambiguities are kept: few integers that seem significant are often wrong.
 class PartialFixing {
  public:
   PartialFixing(const std::vector<Fixable>& all, const RelativeState& state, const FixingOptions& options)
       : all_(all), state_(state), options_(options), best_(attempt(all, state)) {}
 
-  /// All; else without those that had to stay float last time; else, where the integers are too uncertain, without the least
-  /// certain, where they do not stand out, without one satellite, whichever it is, or without the lowest.
+  /// All; else without those left float in the previous epoch; else, if the integers are too uncertain, without the least
+  /// certain, if they are not significant, without one satellite, tried in turn, or without the lowest.
   std::optional<Attempt> run(const std::vector<Satellite>& without_last) {
     if (!best_ || done()) return best_;
     const Attempt whole = *best_;
@@ -167,7 +167,7 @@ class PartialFixing {
     if (best_->integers.success_rate < options_.success_rate || next->ratio > best_->ratio) best_ = std::move(next);
     return true;
   }
-  /// Ever more of these satellites, in their order; none where even half of the ambiguities would be too uncertain.
+  /// Drops more and more of these satellites, in their order; none if even half of the ambiguities are too uncertain.
   void drop(const std::vector<Satellite>& satellites) {
     std::vector<std::vector<Fixable>> sets;
     std::vector<Fixable> set = all_;
@@ -189,7 +189,7 @@ class PartialFixing {
   std::optional<Attempt> best_;
 };
 
-/// The state where these integers are known, and what they are.
+/// The state conditioned on these integers, and the integers.
 void take(const Attempt& t, RelativeState& state, FixedSolution& solution) {
   const Eigen::LDLT<Eigen::MatrixXd> Q(t.Q);
   const std::vector<FixedPair> pairs = pairs_of(t.D, state, t.integers.candidates.col(0));
@@ -226,7 +226,7 @@ FixedSolution AmbiguityFixing::fix(const DifferenceEpoch& epoch, const FloatEpoc
   take(*best, fixed, solution);
   without_ = satellites_of(first);
   std::erase_if(without_, [&](Satellite s) { return std::ranges::find(solution.satellites, s) != solution.satellites.end(); });
-  // Inter-frequency biases leave GLONASS's integers in doubt until the others have told where the rover is.
+  // Because of inter-frequency biases, GLONASS's integers are uncertain until the others have fixed the position.
   if (const std::optional<Attempt> more = attempt(glonass, fixed); more && good(*more, options_)) take(*more, fixed, solution);
   solution.x = fixed.x;
   solution.position_covariance_e = fixed.P.topLeftCorner<3, 3>();
@@ -237,7 +237,7 @@ FixedSolution AmbiguityFixing::fix(const DifferenceEpoch& epoch, const FloatEpoc
 std::vector<FixedPair> IntegerHold::agreed(const FixedSolution& fixed) {
   constexpr int kEnough = 3;  // epochs
   std::map<Unknown, Candidate> next;
-  std::map<Unknown, double> offsets;  // of each reference: what it was against the reference of its group then
+  std::map<Unknown, double> offsets;  // of each reference: its value relative to the reference of its group at that time
   for (const FixedPair& p : fixed.pairs) {
     const auto reference = candidates_.find(p.reference), then = candidates_.find(p.ambiguity);
     if (reference != candidates_.end())
@@ -261,7 +261,7 @@ std::vector<FixedPair> IntegerHold::agreed(const FixedSolution& fixed) {
 }
 
 HeldIntegers held(const std::vector<FixedPair>& pairs, const RelativeState& state) {
-  constexpr double kSd = 0.01;  // cycles: what held ambiguities may still be bent by phase multipath
+  constexpr double kSd = 0.01;  // cycles: by which phase multipath may still change held ambiguities
   const auto rows = static_cast<Eigen::Index>(pairs.size());
   HeldIntegers h{Eigen::MatrixXd::Zero(rows, state.size()), Eigen::VectorXd(rows)};
   for (Eigen::Index row = 0; row < rows; ++row) {

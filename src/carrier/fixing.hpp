@@ -5,7 +5,7 @@
 
 namespace coast::carrier {
 
-/// An ambiguity less that of its reference is this integer.
+/// An ambiguity minus that of its reference equals this integer.
 struct FixedPair {
   Unknown ambiguity, reference;
   double integer = 0.0;
@@ -15,7 +15,7 @@ struct FixedSolution {
   bool fixed = false;
   Eigen::VectorXd x;  ///< the state with the integers
   Eigen::Matrix3d position_covariance_e = Eigen::Matrix3d::Zero();
-  std::vector<record::Satellite> satellites;  ///< with integers
+  std::vector<record::Satellite> satellites;  ///< those with integers
   std::vector<FixedPair> pairs;
   int ambiguities = 0;
   double ratio = 0.0;
@@ -23,7 +23,7 @@ struct FixedSolution {
   Shortfall shortfall = Shortfall::kNone;
 };
 
-/// Integers of all ambiguities of an epoch, or, where these do not stand out, of those of most satellites (partial fixing).
+/// Integers of all ambiguities of an epoch, or, if these are not significant, of those of most satellites (partial fixing).
 class AmbiguityFixing {
  public:
   explicit AmbiguityFixing(const FixingOptions& options) : options_(options) {}
@@ -32,19 +32,19 @@ class AmbiguityFixing {
 
  private:
   const FixingOptions& options_;
-  std::vector<record::Satellite> without_;  ///< satellites that had to be left float last time
+  std::vector<record::Satellite> without_;  ///< satellites left float in the previous epoch
 };
 
-/// Fix and hold: which integers have come out often enough to be kept as measurements.
+/// Fix and hold: integers fixed often enough to be used as measurements.
 class IntegerHold {
  public:
-  /// To be told of every fixed epoch. @return the pairs that have been the same for some epochs in a row
+  /// To be called for every fixed epoch. @return the pairs that were the same for some consecutive epochs
   std::vector<FixedPair> agreed(const FixedSolution& fixed);
 
  private:
   struct Candidate {
-    double value = 0.0;  ///< cycles, against whatever the group was referred to
-    int epochs = 0;      ///< in a row
+    double value = 0.0;  ///< cycles, relative to the reference of its group
+    int epochs = 0;      ///< consecutive
   };
   std::map<Unknown, Candidate> candidates_;
 };

@@ -19,10 +19,10 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-/// The nearest whole number. Adding and taking off 1.5 * 2^52 rounds in the adder: std::round is a call, made n^3 times.
+/// The nearest integer. Adding and subtracting 1.5 * 2^52 rounds in the adder: std::round is a call, made n^3 times.
 double nearest(double x) {
   constexpr double kMagic = 6755399441055744.0;
-  constexpr double kLargest = 2251799813685248.0;  // 2^51: beyond, x is whole or nothing is known of its fraction
+  constexpr double kLargest = 2251799813685248.0;  // 2^51: beyond, x is an integer or has no fractional digits
   return std::abs(x) < kLargest ? (x + kMagic) - kMagic : x;
 }
 
@@ -38,8 +38,8 @@ class Decorrelation {
   [[nodiscard]] const MatrixXd& Z() const { return Z_; }
 
  private:
-  /// From the last to the first, each time the ambiguity that is known best given those before: it leaves `reduce` little to
-  /// exchange (Chang, Yang & Zhou 2005: symmetric pivoting).
+  /// From the last to the first, each time the ambiguity of smallest variance given those before: this leaves `reduce` few
+  /// exchanges (Chang, Yang & Zhou 2005: symmetric pivoting).
   void factorise(MatrixXd& Q) {
     for (Index i = n_ - 1; i >= 0; --i) {
       Index best = i;
@@ -57,7 +57,7 @@ class Decorrelation {
       for (Index j = 0; j < i; ++j) Q.row(j).head(i) -= D_(i) * L_(i, j) * L_.row(i).head(i);
     }
   }
-  /// Takes whole multiples of ambiguity i from ambiguity j, so that |L(i, j)| <= 1/2.
+  /// Subtracts integer multiples of ambiguity i from ambiguity j, so that |L(i, j)| <= 1/2.
   void round_off(Index i, Index j) {
     const double mu = nearest(L_(i, j));
     if (mu == 0.0) return;
@@ -79,7 +79,7 @@ class Decorrelation {
     for (Index k = j + 2; k < n_; ++k) std::swap(L_(k, j), L_(k, j + 1));
     Z_.col(j).swap(Z_.col(j + 1));
   }
-  /// Until the conditional variances fall no further: the last ambiguity, which the search begins with, is known best.
+  /// Until the conditional variances decrease no further: the last ambiguity, with which the search begins, has the smallest.
   void reduce() {
     constexpr double kGain = 1e-6;
     Index rounded = n_ - 2;
@@ -103,7 +103,7 @@ class Decorrelation {
   MatrixXd Z_;
 };
 
-/// Depth-first over the integers, each ambiguity's nearest first, within the largest norm that the candidates so far leave.
+/// Depth-first over the integers, for each ambiguity the nearest first, within the largest norm allowed by the candidates.
 class Search {
  public:
   Search(const Decorrelation& of, VectorXd z_float, int count)
@@ -119,12 +119,12 @@ class Search {
   }
 
  private:
-  static constexpr long kMostNodes = 2'000'000;  // beyond it the ambiguities are not to be fixed anyway
+  static constexpr long kMostNodes = 2'000'000;  // beyond it the ambiguities cannot be fixed anyway
 
   [[nodiscard]] double bound() const {
     return found_.size() < wanted_ ? std::numeric_limits<double>::infinity() : found_.back().norm;
   }
-  /// @param shift  what the integers chosen above have moved the others by
+  /// @param shift  of the other ambiguities by the integers chosen above
   void descend(Index k, double norm, const VectorXd& shift) {
     const double centre = float_(k) + shift(k);
     double z = nearest(centre);
@@ -170,7 +170,7 @@ IntegerSolutions integer_least_squares(const VectorXd& a, const MatrixXd& Q, int
     throw std::invalid_argument(fmt::format("integer_least_squares: {} ambiguities, a {} x {} covariance, {} candidates",
                                             a.size(), Q.rows(), Q.cols(), count));
   const Decorrelation decorrelated(Q);
-  // Whole cycles are taken off first: large ones would cost digits.
+  // Integer cycles are subtracted first: large ones would lose digits.
   const VectorXd whole = a.array().round();
   const auto found = Search(decorrelated, decorrelated.Z().transpose() * (a - whole), count).run();
   IntegerSolutions result;

@@ -10,7 +10,7 @@ namespace {
 
 using record::SatelliteSystem;
 
-/// Constants as each system's interface document states them; the ephemerides were fitted with these.
+/// Constants as in each system's interface document; the ephemerides were fitted with these.
 struct Earth {
   double mu;     ///< m^3/s^2
   double omega;  ///< rad/s
@@ -69,7 +69,7 @@ SatelliteState satellite_state(const record::KeplerEphemeris& p, geo::GpsTime t)
   const Eigen::Vector3d in_plane_rate(r_rate * std::cos(u) - r * u_rate * std::sin(u),
                                       r_rate * std::sin(u) + r * u_rate * std::cos(u), 0.0);
 
-  // The node is stated for the begin of the week; of BeiDou by its own week, 14 s later.
+  // The node is given for the beginning of the week; for BeiDou of its own week, 14 s later.
   constexpr double kGpsMinusBeidou = 14.0;
   const double toe = p.satellite.system == SatelliteSystem::kBeidou ? (p.toe - kGpsMinusBeidou).sow() : p.toe.sow();
   const bool geostationary = is_geostationary(p.satellite);

@@ -1,5 +1,5 @@
 #pragma once
-// Tables by latitude that models of the air have in common. Private to the room.
+// Tables by latitude, common to the troposphere models. Private to the room.
 
 #include <algorithm>
 #include <array>

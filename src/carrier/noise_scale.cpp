@@ -11,7 +11,7 @@ namespace {
 
 using Use = SignalResidual::Use;
 
-/// Sums of squared residuals in units of their sd, and how many of them are free.
+/// Sums of squared residuals in units of their sd, and their degrees of freedom.
 struct Sums {
   double squares = 0.0;
   double freedom = 0.0;
@@ -49,7 +49,7 @@ Sums codes_of(const PpkEpoch& epoch) {
   return sums.freedom > 0.0 ? sums : Sums{};
 }
 
-/// By how much the variance of a long average of code residuals exceeds that of independent ones: 1 + 2 sum rho_k, over the
+/// Ratio of the variance of a long average of code residuals to that of independent ones: 1 + 2 sum rho_k, over the
 /// lags before the correlation is lost in noise.
 double inflation(const std::vector<PpkEpoch>& epochs) {
   constexpr std::size_t kLags = 60;

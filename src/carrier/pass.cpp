@@ -10,7 +10,7 @@ namespace coast::carrier {
 
 namespace {
 
-/// The single-point solution, as far as there is one.
+/// The single-point solution, if there is one.
 PpkEpoch alone(const DifferenceEpoch& epoch) {
   PpkEpoch solved;
   solved.shown = solved.t = epoch.t;
@@ -27,7 +27,7 @@ PpkEpoch alone(const DifferenceEpoch& epoch) {
   return solved;
 }
 
-/// Rows after adjustment to a state: what each is off against the mean of its group, which is the clock's.
+/// Rows after adjustment to a state: deviation of each from the mean of its group, which is the clock's.
 void add_residuals(const DifferenceEpoch& epoch, const FloatEpoch& updated, const Eigen::VectorXd& step,
                    const FixedSolution& fixed, PpkEpoch& solved) {
   const DoubleDifferences& dd = updated.dd;
@@ -44,20 +44,20 @@ void add_residuals(const DifferenceEpoch& epoch, const FloatEpoch& updated, cons
   }
 }
 
-/// To a satellite, north, east, down, and 1 for the clock.
+/// Unit vector to a satellite, north, east, down, and 1 for the clock.
 Eigen::Vector4d way_n(const Direction& direction) {
   const double c = std::cos(direction.elevation);
   return {c * std::cos(direction.azimuth), c * std::sin(direction.azimuth), -std::sin(direction.elevation), 1.0};
 }
 
-/// Satellites of the double differences, and where they stand.
+/// Satellites of the double differences, and their directions.
 std::map<std::size_t, Direction> directions(const FloatEpoch& updated) {
   std::map<std::size_t, Direction> all;
   for (const Row& row : updated.dd.rows) all.emplace(row.satellite, row.direction);
   return all;
 }
 
-/// Covariance, N, E, D, of a position by one range to each satellite with these sds; none where they are placed too badly.
+/// Covariance, N, E, D, of a position from one range per satellite with these sds; none if the geometry is too poor.
 template <class Sd>
 std::optional<Eigen::Matrix3d> covariance_n(const std::map<std::size_t, Direction>& satellites, const Sd& sd) {
   constexpr std::size_t kUnknowns = 4;
@@ -72,14 +72,14 @@ std::optional<Eigen::Matrix3d> covariance_n(const std::map<std::size_t, Directio
   return covariance;
 }
 
-/// Sd of the position over that of ranges to these satellites; 0 where it cannot be told.
+/// Ratio of the sd of the position to that of ranges to these satellites; 0 if it cannot be computed.
 double pdop_of(const std::map<std::size_t, Direction>& satellites) {
   const auto covariance = covariance_n(satellites, [](const Direction&) { return 1.0; });
   return covariance ? std::sqrt(covariance->trace()) : 0.0;
 }
 
-/// What the air does differently at both ends moves the position and is alike in all bands, so that no residual shows it. Where
-/// it is not estimated: as one range of each satellite, 0.7 mm a kilometre off at the zenith, would move it.
+/// The difference of the atmosphere at both ends moves the position equally in all bands, so that residuals do not show it. If
+/// it is not estimated: effect of one range per satellite with an error of 0.7 mm per kilometre at the zenith.
 Eigen::Matrix3d air_covariance(const std::map<std::size_t, Direction>& satellites, const Eigen::Vector3d& r_e,
                                const DifferenceEpoch& epoch, const PpkOptions& options) {
   constexpr double kPerMetre = 7e-7;
@@ -92,10 +92,10 @@ Eigen::Matrix3d air_covariance(const std::map<std::size_t, Direction>& satellite
   return C_n_e * *covariance * C_n_e.transpose();
 }
 
-/// Integers are no fix where errors that the noise does not count become decimetres.
+/// Integers are not accepted as a fix if errors not included in the noise could be decimetres.
 bool badly_placed(double pdop, const Eigen::Matrix3d& covariance_e) {
   constexpr double kMostPdop = 10.0;
-  constexpr double kMostSd = 0.1;  // m, in space
+  constexpr double kMostSd = 0.1;  // m, three-dimensional
   return pdop > kMostPdop || !(covariance_e.trace() < kMostSd * kMostSd);
 }
 

@@ -12,14 +12,14 @@ namespace {
 
 using record::FixQuality;
 
-/// How far the antenna went from the epoch before to this one.
+/// Displacement of the antenna from the previous epoch to this one.
 struct Displacement {
   Eigen::Vector3d d_e = Eigen::Vector3d::Zero();
   Eigen::Matrix3d covariance_e = Eigen::Matrix3d::Zero();
   double dt = 0.0;
 };
 
-/// One phase at both epochs, less what the linearisation expects.
+/// One phase at both epochs, minus the prediction of the linearisation.
 struct Step {
   std::pair<record::SatelliteSystem, char> group;
   Eigen::Vector3d way_e;  ///< to the satellite
@@ -27,7 +27,7 @@ struct Step {
   double weight = 1.0;    ///< 1 / variance
 };
 
-/// Phases less the model at a position, by satellite and band.
+/// Phases minus the model at a position, by satellite and band.
 struct Observed {
   double residual = 0.0;
   double variance = 1.0;
@@ -65,7 +65,7 @@ std::vector<Step> steps_between(const ObservedPhases& before, const ObservedPhas
   return steps;
 }
 
-/// What the steps say of the displacement, and the one that contradicts it most.
+/// Displacement from the steps, and the step that contradicts it most.
 struct Adjusted {
   Eigen::Vector3d x = Eigen::Vector3d::Zero();
   Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();
@@ -73,7 +73,7 @@ struct Adjusted {
   std::size_t which = 0;
 };
 
-/// Least squares with a clock per group, which is its weighted mean; none with too few satellites.
+/// Least squares with one clock per group, which is its weighted mean; none with too few satellites.
 std::optional<Adjusted> adjust(const std::vector<Step>& steps) {
   struct Mean {
     double weight = 0.0, residual = 0.0;
@@ -135,7 +135,7 @@ Eigen::Vector3d acceleration(const Displacement& before, const Displacement& aft
   return (after.d_e / after.dt - before.d_e / before.dt) / (0.5 * (before.dt + after.dt));
 }
 
-/// The mean over two intervals is the velocity of their middle plus a 24th of jerk times span^2.
+/// The mean over two intervals is the velocity at their middle plus a 24th of jerk times span^2.
 SinglePoint::Velocity central(const Displacements& steps, std::size_t i) {
   const Displacement &before = *steps[i], &after = *steps[i + 1];
   const Displacement *earlier = at(steps, i - 1), *later = at(steps, i + 2);
@@ -143,7 +143,7 @@ SinglePoint::Velocity central(const Displacements& steps, std::size_t i) {
   const double jerk = earlier != nullptr && later != nullptr
                           ? (acceleration(after, *later) - acceleration(*earlier, before)).norm() / span
                           : 2.0 * acceleration(before, after).norm() / span;
-  constexpr double kRoom = 3.0;  // the jerk of the neighbours is not that of this very interval
+  constexpr double kRoom = 3.0;  // the jerk of the neighbours differs from that of this interval
   const double unmodelled = kRoom * jerk * span * span / 24.0;
   SinglePoint::Velocity velocity;
   velocity.v_e = (before.d_e + after.d_e) / span;
@@ -152,9 +152,9 @@ SinglePoint::Velocity central(const Displacements& steps, std::size_t i) {
   return velocity;
 }
 
-/// The mean over one interval is off by half of what the velocity changes in it.
+/// The error of the mean over one interval is half of the velocity's change in it.
 SinglePoint::Velocity one_sided(const Displacement& step, const Displacement* next) {
-  constexpr double kUsual = 2.0;  // m/s^2, where nothing tells the acceleration
+  constexpr double kUsual = 2.0;  // m/s^2, if the acceleration is unknown
   const double change = 0.5 * step.dt * (next != nullptr ? acceleration(step, *next).norm() : kUsual);
   SinglePoint::Velocity velocity;
   velocity.v_e = step.d_e / step.dt;

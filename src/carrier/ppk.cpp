@@ -12,7 +12,7 @@ namespace coast::carrier {
 
 namespace {
 
-/// Shares out the progress of stages that take about as long as each other.
+/// Distributes the progress over stages of about equal duration.
 class Stages {
  public:
   Stages(const std::function<void(double)>& progress, int count) : progress_(progress), count_(count) {}
@@ -29,7 +29,7 @@ class Stages {
   int done_ = 0;
 };
 
-/// The value that one in twenty exceeds: single points have outliers.
+/// The value exceeded by one in twenty: single points have outliers.
 double upper_end(std::vector<double> values) {
   if (values.empty()) return 0.0;
   const auto at = values.begin() + static_cast<std::ptrdiff_t>(values.size() * 19 / 20);
@@ -37,7 +37,7 @@ double upper_end(std::vector<double> values) {
   return *at;
 }
 
-/// What the baseline calls for.
+/// Atmosphere states required by the baseline.
 AirStates air_states(const std::vector<DifferenceEpoch>& epochs, bool ionosphere_free) {
   constexpr double kFar = 10e3;     // m
   constexpr double kAbove = 150.0;  // m
@@ -113,7 +113,7 @@ PpkSolution solve_ppk(const record::ObservationRecording& rover, const record::O
   const bool backward = options.order == PassOrder::kBackward;
   Stages stages(progress, (options.noise ? 0 : 1) + (combined ? 2 : 1));
   if (!options.noise) {
-    constexpr NoiseScale kLenient{1.5, 2.0, 1.0};  // so that noise is not taken for outliers before it is known
+    constexpr NoiseScale kLenient{1.5, 2.0, 1.0};  // so that noise is not considered an outlier before it is known
     settled.noise = kLenient;
     settled.noise = estimate_noise(solve_pass(epochs, settled, solution.interval_s, backward, stages.next()), *settled.noise);
   }

@@ -37,7 +37,7 @@ Interpolated interpolate(const OrbitPoint* points, geo::GpsTime t) {
   return at;
 }
 
-/// The points around t where they are equally dense.
+/// The points around t if they are equally spaced.
 const OrbitPoint* around(const std::vector<OrbitPoint>& points, geo::GpsTime t) {
   constexpr double kUneven = 1.5;
   if (points.size() < kPoints || t < points.front().t || t > points.back().t) return nullptr;
@@ -54,7 +54,7 @@ const OrbitPoint* around(const std::vector<OrbitPoint>& points, geo::GpsTime t) 
   return most > kUneven * least ? nullptr : first;
 }
 
-/// Clock and its rate between two points no further apart than `longest`.
+/// Clock and its rate between two points at most `longest` apart.
 template <class Point, class Clock>
 std::optional<std::pair<double, double>> linear(const std::vector<Point>& points, geo::GpsTime t, double longest,
                                                 const Clock& clock) {

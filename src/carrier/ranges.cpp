@@ -22,7 +22,7 @@ double SignalPath::modelled(const SatelliteState& satellite) const {
 SignalPath path_to(const SatelliteState& satellite, const Eigen::Vector3d& r_receiver_e, const geo::Geodetic& receiver,
                    geo::GpsTime t, bool troposphere) {
   constexpr double kLowest = 1.0 / 57.29577951308232;
-  // The ECEF of reception has turned by omega tau against that of transmission; tau to 1e-9 of itself moves nothing by 1 um.
+  // The ECEF axes of reception have rotated by omega tau relative to those of transmission; tau to 1e-9 is accurate to 1 um.
   double range = (satellite.r_e - r_receiver_e).norm();
   Eigen::Vector3d r_satellite_e;
   for (int i = 0; i < 2; ++i) {

@@ -14,12 +14,12 @@ using record::Observation;
 using record::Satellite;
 using record::SatelliteSystem;
 
-/// Numbers the arcs of one receiver's phases as its epochs come.
+/// Numbers the arcs of one receiver's phases epoch by epoch.
 class ArcCounter {
  public:
   explicit ArcCounter(double longest_gap) : longest_gap_(longest_gap) {}
 
-  /// To be told of every observation of a band: a loss of lock also counts where the phase itself is missing.
+  /// To be called for every observation of a band: a loss of lock also counts if the phase itself is missing.
   int arc_of(const Observation& o, geo::GpsTime t) {
     Arc& arc = arcs_[{o.satellite, o.signal.band}];
     arc.lost = arc.lost || o.lost_lock;
@@ -45,7 +45,7 @@ class ArcCounter {
 /// The observations of one satellite at one epoch.
 using OfSatellite = std::span<const Observation>;
 
-/// The code that single-point positions use: of the lowest band, the first there is.
+/// The code used for single-point positions: the first of the lowest band.
 const Observation* code_of(OfSatellite observations) {
   const Observation* first = nullptr;
   for (const Observation& o : observations)
@@ -106,7 +106,7 @@ std::optional<CodeMeasurement> measurement_of(const Observation& code, const Sat
   return measurement;
 }
 
-/// Of two codes the combination in which delays that go with 1/f^2 cancel; none where there is one band only.
+/// The combination of two codes in which delays proportional to 1/f^2 cancel; none if there is only one band.
 std::optional<CodeMeasurement> without_ionosphere(CodeMeasurement first, OfSatellite observations, const Observation& code,
                                                   int channel) {
   for (const Observation& o : observations) {

@@ -10,8 +10,8 @@ struct TrackedBand {
   double frequency = 0.0;  ///< Hz
   std::optional<double> code;
   std::optional<double> phase;  ///< m
-  std::optional<double> rate;   ///< by Doppler, m/s
-  double cn0 = 0.0;             ///< dB-Hz, 0 where unknown
+  std::optional<double> rate;   ///< from Doppler, m/s
+  double cn0 = 0.0;             ///< dB-Hz, 0 if unknown
   bool half_cycle = false;
   int arc = 0;
 };
@@ -25,19 +25,19 @@ struct TrackedSatellite {
 struct TrackedEpoch {
   geo::GpsTime t;
   std::vector<TrackedSatellite> satellites;
-  std::vector<CodeMeasurement> codes;  ///< one of each satellite, for single-point positions
+  std::vector<CodeMeasurement> codes;  ///< one per satellite, for single-point positions
 };
 
-/// What is tracked, and from when to when; the rest is left out.
+/// Signals and time span to be used; the rest is omitted.
 struct Tracking {
   const std::set<record::SatelliteSystem>& systems;
-  std::map<std::pair<record::SatelliteSystem, char>, char> signals;  ///< of each system and band
+  std::map<std::pair<record::SatelliteSystem, char>, char> signals;  ///< tracking code of each system and band
   geo::GpsTime from, to;
-  bool ionosphere_free = false;  ///< codes of single-point positions
+  bool ionosphere_free = false;  ///< codes for single-point positions
 };
 std::vector<TrackedEpoch> track(const record::ObservationRecording& receiver, const Orbits& orbits, const Tracking& wanted);
 
-/// Phases missing for longer may have slipped unseen, s.
+/// Phases missing for longer may have slipped undetected, s.
 double longest_gap(double interval);
 
 }  // namespace coast::carrier

@@ -13,17 +13,17 @@ namespace {
 
 using Kind = Unknown::Kind;
 
-constexpr double kUnknownPosition = 30.0;   // m, sd of a single-point position, with room
-constexpr double kUnknownAmbiguity = 30.0;  // m, sd of code less phase, with room
-// A phase's multipath lasts: averages are not as good as those of white noise, and old ambiguities not exact.
+constexpr double kUnknownPosition = 30.0;   // m, sd of a single-point position, with a margin
+constexpr double kUnknownAmbiguity = 30.0;  // m, sd of code minus phase, with a margin
+// Phase multipath is correlated: averages are not as accurate as with white noise, and old ambiguities not exact.
 constexpr double kAmbiguityWalk = 0.003;  // cycles/sqrt(s)
 
 Unknown ambiguity_of(const SatelliteDifference& satellite, const BandDifference& band) {
   return {Kind::kAmbiguity, satellite.satellite, band.band, band.arc};
 }
 
-/// Ambiguities of GLONASS are integers where the clock of its phases is known: a metre of that clock is 0.002 cycles from one
-/// channel to the next. Codes tell it, hardware delays included.
+/// GLONASS ambiguities are integers if the clock of the phases is known: a metre of that clock is 0.002 cycles between adjacent
+/// channels. It is known from codes, including hardware delays.
 double unknown_variance(const SatelliteDifference& satellite, const BandDifference& band) {
   constexpr double kOfGlonass = 5.0;  // m
   const bool glonass = satellite.satellite.system == record::SatelliteSystem::kGlonass;
@@ -31,7 +31,7 @@ double unknown_variance(const SatelliteDifference& satellite, const BandDifferen
   return sd * sd;
 }
 
-/// Phase less code, cycles; less the code of another band where its own is missing.
+/// Phase minus code, cycles; minus the code of another band if its own is missing.
 std::optional<double> from_code(const SatelliteDifference& satellite, const BandDifference& band) {
   std::optional<double> code = band.code;
   for (const BandDifference& other : satellite.bands)
@@ -51,10 +51,10 @@ Innovation innovation_of(Eigen::MatrixXd H, Eigen::VectorXd v, const RelativeSta
   return in;
 }
 
-/// The row whose error would explain the innovations best (Teunissen 1990: w-test); none where all are plausible.
+/// The row whose error would explain the innovations best (Teunissen 1990: w-test); none if all are plausible.
 std::optional<std::size_t> outlier(const DoubleDifferences& dd, const Innovation& in) {
   constexpr double kSuspicious = 4.5;   // sd
-  constexpr double kControlled = 0.01;  // of a variance of one: below, nothing else speaks of this row
+  constexpr double kControlled = 0.01;  // of a variance of one: below, no other row checks this one
   const Eigen::VectorXd y = in.S.matrixL().solve(in.v);
   const Eigen::MatrixXd Z = in.S.matrixL().solve(dd.B);
   std::optional<std::size_t> worst;
@@ -79,7 +79,7 @@ SignalResidual left_out(const DifferenceEpoch& epoch, const Row& row, double res
 }  // namespace
 
 double longest_unseen(const Unknown& unknown, double interval) {
-  constexpr double kIonosphere = 600.0;  // s: until then what was known of it is worth something
+  constexpr double kIonosphere = 600.0;  // s: until then the previous estimate has information
   const double gap = longest_gap(interval);
   return unknown.kind == Kind::kAmbiguity ? gap : std::max(gap, kIonosphere);
 }
@@ -112,7 +112,7 @@ FloatEpoch RelativeFilter::step(const DifferenceEpoch& epoch) {
 FloatEpoch RelativeFilter::step_from(RelativeState prior, const DifferenceEpoch& epoch) {
   const double dt = started_ ? std::abs(epoch.t - last_) : 0.0;
   state_ = std::move(prior);
-  for (const Unknown& unknown : state_.unknowns())  // of an earlier run, from which this one goes on
+  for (const Unknown& unknown : state_.unknowns())  // of an earlier run, continued by this one
     if (unknown.kind == Kind::kAmbiguity || unknown.kind == Kind::kIonosphere) {
       const bool resumed = seen_.try_emplace(unknown, started_ ? last_ : epoch.t).second;
       if (resumed && unknown.kind == Kind::kAmbiguity) weighting_.known.insert(unknown);
@@ -138,8 +138,8 @@ FloatEpoch RelativeFilter::step_with_position(const DifferenceEpoch& epoch, doub
 }
 
 bool RelativeFilter::predict_position(const DifferenceEpoch& epoch, double dt) {
-  constexpr double kFastest = 50.0;  // m/s, where nothing else tells how far the rover is by now
-  constexpr double kRoom = 3.0;      // times the sd of a badly placed single point
+  constexpr double kFastest = 50.0;  // m/s, if the displacement of the rover is otherwise unknown
+  constexpr double kRoom = 3.0;      // times the sd of a single point with poor geometry
   const bool keeps = started_ && options_.motion == RoverMotion::kStatic;
   if (keeps) return true;
   if (!started_ && !epoch.alone) return false;
@@ -164,7 +164,7 @@ void RelativeFilter::forget_unseen(const DifferenceEpoch& epoch) {
 void RelativeFilter::predict_zenith_delay(const Eigen::Vector3d& baseline_e, const Eigen::Vector3d& up_e, double dt) {
   constexpr double kLeast = 0.001;     // m
   constexpr double kPerMetre = 4e-7;   // of baseline: a centimetre in 25 km
-  constexpr double kPerHeight = 3e-4;  // m/m: what a mean atmosphere may be off
+  constexpr double kPerHeight = 3e-4;  // m/m: error of a mean atmosphere
   constexpr double kWalk = 3e-5;       // m/sqrt(s)
   const Unknown unknown{Kind::kZenithDelay, {}, '0', 0};
   const double sd = kLeast + kPerMetre * baseline_e.norm() + kPerHeight * std::abs(baseline_e.dot(up_e));
@@ -175,9 +175,9 @@ void RelativeFilter::predict_zenith_delay(const Eigen::Vector3d& baseline_e, con
     state_.evolve(i, 1.0, kWalk * kWalk * dt);
 }
 
-/// Differences between receivers grow with the distance, a millimetre a km in quiet times, and change within half an hour.
+/// Differences between receivers grow with distance, a millimetre per km in quiet times, and change within half an hour.
 void RelativeFilter::predict_ionosphere(const DifferenceEpoch& epoch, double baseline, double dt) {
-  constexpr double kPerMetre = 1e-6;   // vertical; more towards the horizon
+  constexpr double kPerMetre = 1e-6;   // vertical; more at low elevation
   constexpr double kUnbounded = 10.0;  // m
   constexpr double kTime = 1800.0;     // s
   const double phi = std::exp(-dt / kTime);
@@ -213,8 +213,8 @@ void RelativeFilter::predict_ambiguities(const DifferenceEpoch& epoch, double dt
     }
 }
 
-/// Receivers of different makes delay the phases of GLONASS's channels differently, by some centimetres from one to the
-/// next, linearly (Wanninger 2012). It is constant, and all satellites of a band share it.
+/// Receivers of different makes have different phase delays of GLONASS's channels, by some centimetres between adjacent
+/// channels, linearly (Wanninger 2012). The slope is constant, and common to all satellites of a band.
 void RelativeFilter::add_inter_frequency_bias(const BandDifference& band) {
   constexpr double kSd = 0.03;  // m
   const Unknown unknown{Kind::kInterFrequencyBias, {}, band.band, 0};
@@ -239,7 +239,7 @@ void RelativeFilter::update(const DifferenceEpoch& epoch, FloatEpoch& result) {
       return;
     }
     const Innovation in = innovation_of(result.dd.B * result.dd.H, result.dd.B * result.dd.residual, state_);
-    if (in.S.info() != Eigen::Success || !in.v.allFinite()) {  // nothing of the state can be trusted
+    if (in.S.info() != Eigen::Success || !in.v.allFinite()) {  // the state is invalid
       state_ = RelativeState();
       started_ = false;
       result.shortfall = Shortfall::kContradiction;

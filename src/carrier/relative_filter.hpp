@@ -28,21 +28,21 @@ struct Innovation {
   Eigen::LLT<Eigen::MatrixXd> S;
 };
 
-/// How long an unknown of a satellite outlives its last observation, s.
+/// How long an unknown of a satellite is kept after its last observation, s.
 double longest_unseen(const Unknown& unknown, double interval);
 
 class RelativeFilter {
  public:
-  /// Options with `air` and `noise` settled.
+  /// Options with `air` and `noise` set.
   RelativeFilter(const PpkOptions& options, double interval);
-  /// For one that knows positions from elsewhere: two satellites tell it something.
+  /// For a filter with an external prior position: two satellites already give information.
   static RelativeFilter coupled(const PpkOptions& options, double interval);
 
-  /// Epochs in order of time, or all of them against it.
+  /// Epochs in time order, or all in reverse time order.
   FloatEpoch step(const DifferenceEpoch& epoch);
-  /// The same for one who knows beforehand where the rover is: `prior` takes the place of this filter's own state.
+  /// The same with an external prior of the rover: `prior` replaces this filter's own state.
   FloatEpoch step_from(RelativeState prior, const DifferenceEpoch& epoch);
-  /// Takes further measurements of unit variance: v = H (truth - state) + noise.
+  /// Applies further measurements of unit variance: v = H (truth - state) + noise.
   void absorb(const Eigen::MatrixXd& H, const Eigen::VectorXd& v);
   [[nodiscard]] const RelativeState& state() const { return state_; }
   [[nodiscard]] std::vector<StateChange> take_changes() { return state_.take_changes(); }
@@ -56,7 +56,7 @@ class RelativeFilter {
   void predict_zenith_delay(const Eigen::Vector3d& baseline_e, const Eigen::Vector3d& up_e, double dt);
   void predict_ionosphere(const DifferenceEpoch& epoch, double baseline, double dt);
   void start_anew(const SatelliteDifference& satellite, const BandDifference& band);
-  /// Finds what contradicts the rest, leaves codes out, forgets ambiguities of phases; then updates.
+  /// Detects outliers, leaves codes out, resets ambiguities of phases; then updates.
   void update(const DifferenceEpoch& epoch, FloatEpoch& result);
   void apply(const Innovation& in, const DifferenceEpoch& epoch, FloatEpoch& result);
   /// @return the step of the state

@@ -8,7 +8,7 @@ namespace coast::carrier {
 
 namespace {
 
-/// Of two bands' phase centres the one that clocks refer to: in which the ionosphere cancels.
+/// The phase centre to which clocks refer, from those of two bands: of the ionosphere-free combination.
 std::optional<Eigen::Vector3d> ionosphere_free_offset(const record::AntennaCalibration& antenna,
                                                       record::SatelliteSystem system) {
   std::optional<std::pair<double, Eigen::Vector3d>> first;

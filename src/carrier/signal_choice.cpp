@@ -31,7 +31,7 @@ double total(const std::map<Satellite, long>& of) {
   return sum;
 }
 
-/// Share of both receivers' epochs on satellites that both track with these signals.
+/// Fraction of both receivers' epochs with satellites that both track with these signals.
 double common(const std::map<Satellite, long>& rover, double all_rover, const std::map<Satellite, long>& base,
               double all_base) {
   double shares = 0.0;
@@ -45,7 +45,7 @@ double common(const std::map<Satellite, long>& rover, double all_rover, const st
 
 SignalChoice choose_signals(const ObservationRecording& rover, const ObservationRecording& base,
                             const std::set<SatelliteSystem>& systems) {
-  constexpr double kEqual = 0.01;  // worth this share of observations: biases of equal signals cancel
+  constexpr double kEqual = 0.01;  // equal signals are preferred up to this loss of observations: their biases cancel
   const Counts rovers = count(rover, systems), bases = count(base, systems);
   SignalChoice choice;
   for (const auto& [band, rover_signals] : rovers) {
@@ -64,7 +64,7 @@ SignalChoice choose_signals(const ObservationRecording& rover, const Observation
         choice[band] = {rover_tracking, base_tracking};
       }
   }
-  // Galileo's E5 is E5a and E5b together: beside both it tells nothing new.
+  // Galileo's E5 is E5a and E5b together: in addition to both it has no new information.
   const auto e5a = choice.find({SatelliteSystem::kGalileo, '5'}), e5b = choice.find({SatelliteSystem::kGalileo, '7'});
   if (e5a != choice.end() && e5b != choice.end()) choice.erase({SatelliteSystem::kGalileo, '8'});
   return choice;

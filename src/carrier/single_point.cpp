@@ -12,17 +12,17 @@ namespace {
 
 using record::SatelliteSystem;
 
-constexpr double kNearEarth = 6.2e6;  // m from its centre: below, there is no sky and no atmosphere yet
+constexpr double kNearEarth = 6.2e6;  // m from the centre: below, satellites and atmosphere are not modelled yet
 
 /// The linearised problem at one position: rows scaled to unit variance. Unknowns: position, the clock of each system.
 struct Linearised {
   Eigen::MatrixXd H;
   Eigen::VectorXd residual;
-  std::vector<std::size_t> used;  ///< measurement of each row
+  std::vector<std::size_t> used;  ///< index of the measurement of each row
   std::vector<SatelliteSystem> clocks;
 };
 
-/// Sd of a code from one receiver: noise, multipath and what the models of the air leave, m.
+/// Sd of a code from one receiver: noise, multipath and residual errors of the atmosphere models, m.
 double code_sd(double elevation) {
   constexpr double kZenith = 0.9;
   return kZenith / std::max(std::sin(elevation), 0.1);
@@ -37,7 +37,7 @@ class Problem {
     const bool placed = r_e.norm() > kNearEarth;
     const geo::Geodetic receiver = placed ? geo::geodetic_from_ecef(r_e) : geo::Geodetic{};
     Linearised l;
-    std::vector<std::pair<double, SignalPath>> rows;  // code less model
+    std::vector<std::pair<double, SignalPath>> rows;  // code minus model
     for (std::size_t i = 0; i < measurements_.size(); ++i) {
       if (left_out[i]) continue;
       const CodeMeasurement& m = measurements_[i];
@@ -104,10 +104,10 @@ std::optional<Solved> solve(const Problem& problem, const Eigen::Vector3d& start
   return std::nullopt;
 }
 
-/// The row whose error would explain the residuals best; none where nothing sticks out.
+/// The row whose error would explain the residuals best; none if all are plausible.
 std::optional<Eigen::Index> outlier(const Solved& s) {
   constexpr double kSuspicious = 4.0;   // sd
-  constexpr double kControlled = 0.05;  // share of an error that the residual shows
+  constexpr double kControlled = 0.05;  // fraction of an error visible in the residual
   Eigen::Index worst = -1;
   double largest = kSuspicious;
   const Eigen::MatrixXd G = s.at.H * s.covariance;
@@ -134,7 +134,7 @@ std::optional<SinglePoint::Velocity> velocity(const Solved& s, const std::vector
     if (!m.range_rate) continue;
     const Eigen::Vector3d to_satellite = (m.state.r_e - s.r_e).normalized();
     const double expected = modelled_rate(m.state, s.r_e, Eigen::Vector3d::Zero());
-    const double weight = std::max(to_satellite.dot(s.r_e.normalized()), 0.1);  // the elevation's sine, about
+    const double weight = std::max(to_satellite.dot(s.r_e.normalized()), 0.1);  // approximate sine of the elevation
     Eigen::Vector4d h;
     h << -to_satellite, 1.0;
     const double y = *m.range_rate - expected;
@@ -160,7 +160,7 @@ std::optional<SinglePoint> single_point(const std::vector<CodeMeasurement>& meas
   std::vector<bool> left_out(measurements.size(), false);
   SinglePoint result;
   std::optional<Solved> s = solve(problem, start_e, left_out);
-  if (s) s = solve(problem, s->r_e, left_out);  // with mask and air where the guess had none
+  if (s) s = solve(problem, s->r_e, left_out);  // with mask and atmosphere, which the first solution did not use
   while (s) {
     const std::optional<Eigen::Index> worst = outlier(*s);
     if (!worst) break;

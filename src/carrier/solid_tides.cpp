@@ -17,7 +17,7 @@ using std::sin;
 
 constexpr double kArcSecond = kDegree / 3600.0;
 
-/// Days since 2000-01-01 12:00 as GPS time's calendar reads it.
+/// Days since 2000-01-01 12:00 in the calendar of GPS time.
 double days_since_2000(geo::GpsTime t) {
   return (t - geo::GpsTime::from_calendar({2000, 1, 1, 12, 0, 0.0})) / 86400.0;
 }
@@ -29,10 +29,10 @@ double centuries(geo::GpsTime t) {
 }
 
 /// Greenwich mean sidereal time, rad: Earth rotation angle and precession in right ascension, IERS Conventions (2010) (5.15)
-/// and (5.32) to first order, UT1 taken as UTC.
+/// and (5.32) to first order, with UT1 = UTC.
 double sidereal_time(geo::GpsTime t) {
   const double days = days_since_2000(t) - geo::leap_seconds(t) / 86400.0;
-  // A whole turn a day is taken off before it is multiplied, or it costs digits.
+  // A full rotation per day is subtracted before the multiplication, which would lose digits.
   const double turns = 0.7790572732640 + 0.00273781191135448 * days + std::fmod(days, 1.0);
   return std::fmod(turns, 1.0) * 2.0 * geo::kPi + 4612.156534 * kArcSecond * centuries(t);
 }
@@ -62,7 +62,7 @@ Point point_at(const Eigen::Vector3d& r_e) {
   return p;
 }
 
-/// What a body raises at a point.
+/// The effect of a body at a point.
 struct Raised {
   double amplitude = 0.0;  ///< GM_j Re^4 / (GM R_j^3) of degree 2, m
   double degree3 = 0.0;    ///< Re / R_j, from degree 2 to 3
@@ -95,7 +95,7 @@ Eigen::Vector3d in_phase(const Raised& body, const Point& p) {
   return body.amplitude * (degree2 + body.degree3 * degree3);
 }
 
-/// Where the mantle is late: IERS Conventions (2010) (7.10), (7.11).
+/// Out-of-phase part due to the anelastic mantle: IERS Conventions (2010) (7.10), (7.11).
 Eigen::Vector3d out_of_phase(const Raised& body, const Point& p) {
   constexpr double kH1 = -0.0025, kL1 = -0.0007;  // diurnal
   constexpr double kH2 = -0.0022, kL2 = -0.0007;  // semidiurnal
@@ -121,7 +121,7 @@ Eigen::Vector3d toroidal(const Raised& body, const Point& p) {
   return body.amplitude * (diurnal + semidiurnal);
 }
 
-/// A tide whose Love and Shida numbers are not the nominal ones.
+/// A tide with Love and Shida numbers different from the nominal ones.
 struct Line {
   std::array<double, 5> multipliers;     ///< of s, h, p, N', ps; of tau it is 1 for the diurnal, 0 for the zonal tides
   double radial_in, radial_out;          ///< mm
@@ -145,7 +145,7 @@ constexpr std::array<Line, 5> kZonal{{{{0, 0, 0, 1, 0}, 0.47, 0.16, 0.23, 0.07},
                                       {{2, 0, 0, 0, 0}, -0.13, -0.15, -0.11, -0.07},
                                       {{2, 0, 0, 1, 0}, -0.05, -0.06, -0.05, -0.03}}};
 
-/// What the resonance of the free core nutation and the anelastic mantle make different from (7.5) at single frequencies, m:
+/// Corrections to (7.5) at single frequencies by the resonance of the free core nutation and the anelastic mantle, m:
 /// IERS Conventions (2010) (7.12), (7.13).
 Eigen::Vector3d by_frequency(const Point& p, geo::GpsTime t) {
   const double T = centuries(t);
@@ -189,7 +189,7 @@ Eigen::Vector3d sun_e(geo::GpsTime t) {
 
 Eigen::Vector3d moon_e(geo::GpsTime t) {
   const double T = centuries(t);
-  // Mean longitude of date, where the book's is of J2000; anomalies of Moon and Sun, distance from the node, elongation.
+  // Mean longitude of date, while the book's is of J2000; anomalies of Moon and Sun, distance from the node, elongation.
   const double mean = (218.31617 + 481267.88088 * T) * kDegree;
   const double l = (134.96292 + 477198.86753 * T) * kDegree, ls = (357.52543 + 35999.04944 * T) * kDegree;
   const double f = (93.27283 + 483202.01873 * T) * kDegree, d = (297.85027 + 445267.11135 * T) * kDegree;
@@ -197,7 +197,7 @@ Eigen::Vector3d moon_e(geo::GpsTime t) {
   const double periodic = 22640.0 * sin(l) + 769.0 * sin(2.0 * l) - 4586.0 * sin(l - d2) + 2370.0 * sin(d2) - 668.0 * sin(ls) -
                           412.0 * sin(2.0 * f) - 212.0 * sin(2.0 * l - d2) - 206.0 * sin(l + ls - d2) + 192.0 * sin(l + d2) -
                           165.0 * sin(ls - d2) + 148.0 * sin(l - ls) - 125.0 * sin(d) - 110.0 * sin(l + ls) -
-                          55.0 * sin(2.0 * f - d2);  // arc seconds, as the next
+                          55.0 * sin(2.0 * f - d2);  // arc seconds, like the next
   const double from_node = f + (periodic + 412.0 * sin(2.0 * f) + 541.0 * sin(ls)) * kArcSecond;
   const double latitude = 18520.0 * sin(from_node) - 526.0 * sin(f - d2) + 44.0 * sin(l + f - d2) - 31.0 * sin(f - l - d2) -
                           25.0 * sin(f - 2.0 * l) - 23.0 * sin(ls + f - d2) + 21.0 * sin(f - l) + 11.0 * sin(f - ls - d2);
@@ -213,7 +213,7 @@ Eigen::Vector3d solid_tide(const Eigen::Vector3d& r_e, geo::GpsTime t) {
 
 Eigen::Vector3d solid_tide(const Eigen::Vector3d& r_e, geo::GpsTime t, const Eigen::Vector3d& r_sun_e,
                            const Eigen::Vector3d& r_moon_e) {
-  constexpr double kMoon = 0.0123000371, kSun = 332946.0487;  // masses in that of the Earth, IERS Conventions (2010) table 1.1
+  constexpr double kMoon = 0.0123000371, kSun = 332946.0487;  // masses over the Earth's, IERS Conventions (2010) table 1.1
   const Point p = point_at(r_e);
   Eigen::Vector3d displacement = by_frequency(p, t);
   for (const Raised& body : {raised_by(r_moon_e, kMoon, p), raised_by(r_sun_e, kSun, p)})

@@ -12,7 +12,7 @@ namespace coast::carrier {
 
 namespace {
 
-constexpr double kYear = 365.25;      // d, of both models
+constexpr double kYear = 365.25;      // d, in both models
 constexpr double kFreezing = 273.15;  // K
 
 /// The coefficients of GPT as published: unnormalised harmonics n = 0 to 9, m = 0 to n, of cos m longitude and sin m longitude.
@@ -38,7 +38,7 @@ constexpr Field kUndulation{
      4.4540e-4,  8.8663e-5,  5.5596e-5,  2.4826e-6,  1.0279e-6, 0.0,        6.0529e-2,  -3.5824e-2, -5.1367e-3, 3.0119e-5,
      -2.9911e-5, 1.9844e-5,  -1.2349e-6, -7.6756e-9, 5.0100e-8}};
 
-// Pressure on the geoid, hPa: mean, and amplitude of the year.
+// Pressure on the geoid, hPa: mean, and annual amplitude.
 constexpr Field kPressure{
     {1.0108e+3,  8.4886e+0,  1.4799e+0,  -1.3897e+1, 3.7516e-3,  -1.4936e-1, 1.2232e+1,  -7.6615e-1, -6.7699e-2, 8.1002e-3,
      -1.5874e+1, 3.6614e-1,  -6.7807e-2, -3.6309e-3, 5.9966e-4,  4.8163e+0,  -3.7363e-1, -7.2071e-2, 1.9998e-3,  -6.2385e-4,
@@ -66,7 +66,7 @@ constexpr Field kPressureAmplitude{
      -1.3034e-4, -2.3971e-5, -2.6622e-6, 5.7852e-7,  4.5847e-8,  0.0,        4.4777e-2,  -3.0421e-3, 2.6062e-5,  -7.2421e-5,
      1.9119e-6,  3.9236e-7,  2.2390e-7,  2.9765e-9,  -4.6452e-9}};
 
-// Temperature on the geoid, degrees Celsius: mean, and amplitude of the year.
+// Temperature on the geoid, degrees Celsius: mean, and annual amplitude.
 constexpr Field kTemperature{
     {1.6257e+1,  2.1224e+0,  9.2569e-1,  -2.5974e+1, 1.4510e+0,  9.2468e-2,  -5.3192e-1, 2.1094e-1, -6.9210e-2, -3.4060e-2,
      -4.6569e+0, 2.6385e-1,  -3.6093e-2, 1.0198e-2,  -1.8783e-3, 7.4983e-1,  1.1741e-1,  3.9940e-2, 5.1348e-3,  5.9111e-3,
@@ -94,8 +94,8 @@ constexpr Field kTemperatureAmplitude{
      -8.2461e-5, 3.1095e-5,  -5.3860e-7, -1.2055e-7, -1.1517e-7, 0.0,        3.1404e-2, 1.5580e-2,  -1.1428e-3, 3.3529e-5,
      1.0387e-5,  -1.9378e-6, -2.7327e-7, 7.5833e-9,  -9.2323e-9}};
 
-/// P_nm(sin latitude) exp(i m longitude), unnormalised and without the phase of Condon and Shortley. The recursion is in the
-/// components of the unit vector, so that nothing is divided by the cosine of the latitude at a pole.
+/// P_nm(sin latitude) exp(i m longitude), unnormalised and without the Condon-Shortley phase. The recursion uses the
+/// components of the unit vector, so that there is no division by the cosine of the latitude at a pole.
 using Harmonics = std::array<std::complex<double>, kTerms>;
 Harmonics harmonics(const geo::Geodetic& point) {
   const double axial = std::sin(point.latitude);
@@ -122,7 +122,7 @@ double value(const Field& field, const Harmonics& y) {
   return sum;
 }
 
-/// Where the formulas for the heights still have air.
+/// Limits the height to the range of validity of the formulas.
 double within_the_air(double height) {
   return std::clamp(height, -500.0, 10000.0);
 }
@@ -154,7 +154,7 @@ struct MeanVapour {
 MeanVapour mean_vapour(double latitude, double height, double day) {
   constexpr double kGravity = 9.80665;     // m/s^2, DO-229's
   constexpr double kSouth = 211.0 - 28.0;  // d, from the northern minimum to the southern
-  // The step at the equator does no harm: up to 15 degrees the amplitudes are zero.
+  // The step at the equator has no effect: up to 15 degrees the amplitudes are zero.
   const double season = std::cos(2.0 * geo::kPi * (latitude < 0.0 ? day - kSouth : day) / kYear);
   const auto of_day = [&](const Column Vapour::*column) {
     return at_latitude(kMeanVapour.*column, latitude) - season * at_latitude(kVapourAmplitude.*column, latitude);

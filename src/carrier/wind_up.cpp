@@ -16,8 +16,8 @@ Eigen::Vector3d receiving_dipole(const Eigen::Vector3d& k, const Eigen::Matrix3d
   return x - k * k.dot(x) - k.cross(C_b_e.col(1));
 }
 
-/// Angle about k from one dipole to the other, both across k, cycles. Wu et al. have sign(k (a x b)) acos(a b / |a| |b|), which
-/// loses half of the digits near 0.
+/// Angle about k from one dipole to the other, both normal to k, cycles. Wu et al. have sign(k (a x b)) acos(a b / |a| |b|),
+/// which loses half of the digits near 0.
 double turn(const Eigen::Vector3d& k, const Eigen::Vector3d& from, const Eigen::Vector3d& to) {
   return std::atan2(k.dot(from.cross(to)), from.dot(to)) / (2.0 * std::numbers::pi);
 }

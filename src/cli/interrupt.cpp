@@ -12,7 +12,7 @@
 #include <string>
 #include <thread>
 
-#include "coast/io/writers.hpp"
+#include "coast/jobs/job.hpp"
 
 namespace coast::cli {
 
@@ -21,7 +21,7 @@ void end_cleanly_on_signals() {
   sigemptyset(&awaited);
   for (const int signal : {SIGINT, SIGTERM, SIGHUP}) {
     struct sigaction present {};
-    // What is ignored stays so: nohup, and jobs that a script starts in the background.
+    // Ignored signals remain ignored: for nohup, and for background jobs of scripts.
     if (sigaction(signal, nullptr, &present) == 0 && present.sa_handler != SIG_IGN) sigaddset(&awaited, signal);
   }
   pthread_sigmask(SIG_BLOCK, &awaited, nullptr);
@@ -33,13 +33,13 @@ void end_cleanly_on_signals() {
     }
     const std::string text = fmt::format("coast: interrupted by SIG{}; half-written files are removed\n", sigabbrev_np(signal));
     static_cast<void>(!::write(STDERR_FILENO, text.data(), text.size()));
-    io::exit_without_unfinished_files(128 + signal);
+    jobs::exit_without_unfinished_files(128 + signal);
   }).detach();
 }
 
 void keep_standard_streams() {
   for (const int stream : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO})
-    // The lowest free number is this one; opened the other way round, so that using it fails.
+    // The lowest free number is this one; opened for the opposite direction, so that using it fails.
     if (::fcntl(stream, F_GETFD) < 0) static_cast<void>(::open("/dev/null", stream == STDIN_FILENO ? O_WRONLY : O_RDONLY));
 }
 

@@ -1,16 +1,16 @@
 #pragma once
-// The ends of the program that no command sees.
+// Termination of the program outside of the commands.
 
 namespace coast::cli {
 
-/// From here on SIGINT, SIGTERM and SIGHUP remove half-written files and end the program with 128 + signal. A file that may not
-/// grow (`ulimit -f`) and a pipe without a reader are errors of writing. Call before any thread is started.
+/// After this call SIGINT, SIGTERM and SIGHUP remove half-written files and end the program with 128 + signal. A file size
+/// limit (`ulimit -f`) and a pipe without a reader are errors of writing. Call before any thread is started.
 void end_cleanly_on_signals();
 
-/// A standard stream that is closed fails when it is written to; its number does not become that of a file of results.
+/// Writing to a closed standard stream fails; its number is not reused for a file of results.
 void keep_standard_streams();
 
-/// @throws OutputError  what was printed did not reach standard output
+/// @throws OutputError  printed text did not reach standard output
 void flush_standard_output();
 
 }  // namespace coast::cli

@@ -6,11 +6,15 @@
 #include <cstdio>
 #include <new>
 
-#include "coast/config/node.hpp"
-#include "coast/record/error.hpp"
+#include "coast/jobs/array_study.hpp"
+#include "coast/jobs/calibrate.hpp"
+#include "coast/jobs/estimator_study.hpp"
+#include "coast/jobs/file_kind.hpp"
+#include "coast/jobs/ppk.hpp"
+#include "coast/jobs/synth.hpp"
+#include "coast/jobs/tumble.hpp"
 #include "commands.hpp"
 #include "interrupt.hpp"
-#include "schema_check.hpp"
 
 namespace {
 
@@ -48,7 +52,7 @@ void add_process(CLI::App& app, std::filesystem::path& input, CommonOptions& com
       "  gnss:\n"
       "    file: gnss.pos");
   process->callback([&input, &common] {
-    coast::cli::require_kind(input, "process");
+    coast::jobs::require_kind(input, "process");
     coast::cli::process(input, common);
   });
 }
@@ -59,7 +63,7 @@ void add_simulate(CLI::App& app, std::filesystem::path& input, std::optional<std
   simulate->add_option("scenario", input, "scenario.yaml")->required();
   simulate->add_option("--seed", seed, "seed of the simulated noise (default: the scenario's)");
   simulate->callback([&input, &seed, &common] {
-    coast::cli::require_kind(input, "simulate");
+    coast::jobs::require_kind(input, "simulate");
     coast::cli::simulate(input, seed, common);
   });
 }
@@ -70,28 +74,28 @@ void add_outage(CLI::App& app, std::filesystem::path& input, CommonOptions& comm
                  "coast outage configs/studies/straight_130s.yaml --out study", common);
   outage->add_option("study", input, "study.yaml: run and sweep, or scenario and seeds")->required();
   outage->callback([&input, &common] {
-    coast::cli::require_kind(input, "outage");
+    coast::jobs::require_kind(input, "outage");
     coast::cli::outage(input, common);
   });
 }
 
 void add_calibrate(CLI::App& app, std::filesystem::path& input, CommonOptions& common) {
-  auto* calibrate =
-      subcommand(app, "calibrate", "static records -> IMU error model with intervals, and what they cannot tell", "", common);
+  auto* calibrate = subcommand(
+      app, "calibrate", "static records -> IMU error model with intervals; rests in many poses -> scale, misalignment, bias",
+      "", common);
   calibrate
-      ->add_option("input", input, "an IMU file at rest (default CSV columns, KF-GINS, IMR), calibration.yaml, or study.yaml")
+      ->add_option("input", input,
+                   "an IMU file at rest (default CSV columns, KF-GINS, IMR), calibration.yaml, tumble.yaml, or study.yaml")
       ->required();
-  calibrate->footer(
-      fmt::format("Examples:\n  coast calibrate imu.csv --out imu-model\n  coast calibrate calibration.yaml\n\n"
-                  "calibration.yaml (all keys: docs/reference/calibrate.md):\n{}\n\nstudy.yaml, the estimators on simulated "
-                  "records of known processes:\n{}",
-                  coast::cli::calibration_example("  "), coast::cli::estimator_study_example("  ")));
+  calibrate->footer(fmt::format(
+      "Examples:\n  coast calibrate imu.csv --out imu-model\n  coast calibrate calibration.yaml\n\n"
+      "calibration.yaml (all keys: docs/reference/calibrate.md):\n{}\n\ntumble.yaml, one recording of rests in many "
+      "poses and the turns between them:\n{}\n\nstudy.yaml, the estimators on simulated "
+      "records of known processes:\n{}",
+      coast::jobs::calibration_example("  "), coast::jobs::tumble_example("  "), coast::jobs::estimator_study_example("  ")));
   calibrate->callback([&input, &common] {
-    if (input.extension() == ".yaml") coast::cli::require_kind(input, "calibrate");
-    if (coast::cli::is_estimator_study(input))
-      coast::cli::estimator_study(input, common);
-    else
-      coast::cli::calibrate(input, common);
+    if (input.extension() == ".yaml") coast::jobs::require_kind(input, "calibrate");
+    coast::cli::calibrate(input, common);
   });
 }
 
@@ -103,13 +107,10 @@ void add_synth(CLI::App& app, std::filesystem::path& input, CommonOptions& commo
       fmt::format("Example:\n  coast synth array.yaml --out synthetic\n\narray.yaml (all keys: "
                   "docs/reference/synth.md):\n{}\n\nstudy.yaml, simulated arrays with known "
                   "truth:\n{}",
-                  coast::cli::array_example("  "), coast::cli::array_study_example("  ")));
+                  coast::jobs::array_example("  "), coast::jobs::array_study_example("  ")));
   synth->callback([&input, &common] {
-    coast::cli::require_kind(input, "synth");
-    if (coast::cli::is_array_study(input))
-      coast::cli::array_study(input, common);
-    else
-      coast::cli::synth(input, common);
+    coast::jobs::require_kind(input, "synth");
+    coast::cli::synth(input, common);
   });
 }
 
@@ -117,9 +118,9 @@ void add_ppk(CLI::App& app, std::filesystem::path& input, CommonOptions& common)
   auto* ppk = subcommand(app, "ppk", "RINEX of rover and base -> fixed carrier-phase positions", "", common);
   ppk->add_option("input", input, "run.yaml with gnss: {ppk: ..}, or ppk.yaml")->required();
   ppk->footer(fmt::format("Example:\n  coast ppk ppk.yaml --out positions\n\nppk.yaml (all keys: docs/reference/ppk.md):\n{}",
-                          coast::cli::ppk_example("  ")));
+                          coast::jobs::ppk_example("  ")));
   ppk->callback([&input, &common] {
-    coast::cli::require_kind(input, "ppk");
+    coast::jobs::require_kind(input, "ppk");
     coast::cli::ppk(input, common);
   });
 }
@@ -138,9 +139,8 @@ void add_compare(CLI::App& app, std::filesystem::path& first, std::filesystem::p
 
 void add_diagnose(CLI::App& app, std::filesystem::path& input, coast::cli::DiagnoseOptions& choice, CommonOptions& common) {
   auto* diagnose = subcommand(
-      app, "diagnose", "what the configured model leaves out: where, what, how sure, what it gains",
-      "coast diagnose run.yaml --out diagnosis\n\nWhat it takes otherwise than coast process: docs/reference/diagnose.md",
-      common);
+      app, "diagnose", "errors that the configured model leaves out: which, how large, how certain, what modelling them gains",
+      "coast diagnose run.yaml --out diagnosis\n\nKeys that differ from coast process: docs/reference/diagnose.md", common);
   diagnose->add_option("run", input, "run.yaml, as for `coast process`")->required();
   diagnose->add_option("--twins", choice.twins, "simulated twins that the recording is set against; 0: none")
       ->check(CLI::Range(0, 1000))
@@ -148,19 +148,19 @@ void add_diagnose(CLI::App& app, std::filesystem::path& input, coast::cli::Diagn
   diagnose->add_option("--simulation", choice.simulation,
                        "your own simulation in place of the twins: a scenario, or the run.yaml of a simulated recording");
   diagnose->callback([&] {
-    coast::cli::require_kind(input, "process");
+    coast::jobs::require_kind(input, "process");
     coast::cli::diagnose(input, choice, common);
   });
 }
 
-// Names the nearest subcommand for a first word that is none.
+// Suggests the nearest subcommand if the first word is none.
 void require_subcommand(const CLI::App& app, const std::string& word) {
   if (word.starts_with('-')) return;
   std::vector<std::string> names;
   for (const CLI::App* command : app.get_subcommands([](const CLI::App*) { return true; }))
     names.push_back(command->get_name());
   if (std::ranges::find(names, word) != names.end()) return;
-  const std::string near = coast::config::nearest(word, names);
+  const std::string near = coast::jobs::nearest(word, names);
   throw coast::InputError({"", 0,
                            near.empty() ? fmt::format("{} is no subcommand, there are: {}", word, fmt::join(names, ", "))
                                         : fmt::format("{} is no subcommand: did you mean {}?", word, near),

@@ -36,7 +36,7 @@ void ProgressLine::show(const char* what, double fraction) {
   }
   if (terminal_) {
     if (begins || Clock::now() - told_ >= std::chrono::milliseconds(100)) rewrite();
-  } else if (begins && begun_stages_.insert(what_).second) {  // one that comes again and again would fill the file
+  } else if (begins && begun_stages_.insert(what_).second) {  // a repeated stage would fill the file
     tell_now();
   }
 }
@@ -69,7 +69,7 @@ void ProgressLine::tell_regularly(const std::stop_token& stop, std::chrono::mill
   std::unique_lock lock(mutex_);
   told_ = Clock::now();
   while (!stop.stop_requested()) {
-    stopped_.wait_until(lock, stop, told_ + every, [] { return false; });  // woken by the end alone
+    stopped_.wait_until(lock, stop, told_ + every, [] { return false; });  // woken only by the end
     if (!stop.stop_requested() && Clock::now() - told_ >= every) tell_now();
   }
 }

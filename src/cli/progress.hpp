@@ -10,18 +10,18 @@
 
 namespace coast::cli {
 
-/// Tells on standard error what is being done, how far it is and the time left of that stage; silent if `quiet` is set.
+/// Reports on standard error the current stage, its progress and its remaining time; silent if `quiet` is set.
 /// On a terminal it is one line that is rewritten. Elsewhere (a file, a pipe) it is a line when a stage begins for the first
-/// time, and a line each `every` while the job lasts, also through a step that does not call. Threads may call together.
+/// time, and a line each `every` while the job lasts, also during a step without calls. Threads may call concurrently.
 class ProgressLine {
  public:
   explicit ProgressLine(bool quiet, std::chrono::milliseconds every = std::chrono::seconds(30));
   ~ProgressLine();
   ProgressLine(const ProgressLine&) = delete;
   ProgressLine& operator=(const ProgressLine&) = delete;
-  /// @param fraction  done of this stage, 0 to 1; 0 where it is not known: then no time left is told
+  /// @param fraction  done of this stage, 0 to 1; 0 if unknown: then no remaining time is reported
   void show(const char* what, double fraction);
-  /// `show`, for those that do not know this class; not beyond its life.
+  /// `show`, for callers without this class; valid only during its lifetime.
   [[nodiscard]] std::function<void(const char*, double)> stages();
   /// Removes the line of a terminal, so that other text can be printed.
   void clear();
@@ -45,7 +45,7 @@ class ProgressLine {
   std::size_t width_ = 0;  ///< of the line on the terminal
   std::set<std::string> begun_stages_;
   std::condition_variable_any stopped_;
-  std::jthread regular_;  ///< last, so that it ends before what it uses
+  std::jthread regular_;  ///< last, so that it ends before the members that it uses
 };
 
 }  // namespace coast::cli

@@ -1,4 +1,4 @@
-// What was asked and answered: the refusal of unknown keys, and the resolved tree.
+// Requested keys and their values: the refusal of unknown keys, and the resolved tree.
 
 #include <fmt/format.h>
 
@@ -64,7 +64,7 @@ class Writer {
     for (const auto& [key, text] : e.defaults) {
       if (data_.child(index, key) == nullptr) line(indent, key, text, "default");
     }
-    // Comments: a run that began with what another one found would take another way and end beside it.
+    // As comments: a run that starts from the estimates of another one would take another path and end with similar values.
     for (const auto& [key, text] : e.estimated) line(indent + "# ", key, text, "estimated");
   }
 
@@ -92,7 +92,7 @@ class Writer {
     if (is_flat(data_, index)) {
       out_ += fmt::format("{} {}  # {}\n", head, flow(data_, index), data_.source_of(index));
     } else if (e.children.empty() && e.defaults.empty() && e.estimated.empty()) {
-      if (e.line > 0) out_ += head + " {}\n";  // else an absent section that took no default
+      if (e.line > 0) out_ += head + " {}\n";  // else an absent section without default
     } else {
       out_ += head + "\n";
       e.kind == Kind::kMap ? map(index, indent + "  ") : list(index, indent + "  ");

@@ -1,5 +1,5 @@
 #pragma once
-// The tree behind config::Node: an arena of entries, and the ledger of what was asked and answered.
+// The tree of config::Node: an arena of entries, and the ledger of requested keys and their values.
 
 #include <cstddef>
 #include <filesystem>
@@ -25,9 +25,9 @@ struct TreeEntry {
 
   // Ledger.
   bool asked = false;
-  bool is_path = false;                          // read by path(): written so that it resolves from anywhere
+  bool is_path = false;                          // read by path(): written so that it resolves from any folder
   std::set<std::string> asked_keys;              // of a map, present or not
-  std::map<std::string, std::string> defaults;   // of a map: absent key -> YAML text of the value taken
+  std::map<std::string, std::string> defaults;   // of a map: absent key -> YAML text of the default used
   std::map<std::string, std::string> estimated;  // of a map: key -> YAML text
 };
 
@@ -49,7 +49,7 @@ struct TreeData {
 // The text of `path` with a leading ${COAST_DATA} expanded, from the folder of `file`.
 [[nodiscard]] std::filesystem::path resolve_path(const TreeData& data, std::size_t index);
 
-// Scalar as YAML: plain where that is safe in block and flow, else in double quotes.
+// Scalar as YAML: plain if that is safe in block and flow, else in double quotes.
 [[nodiscard]] std::string yaml_text(std::string_view text);
 [[nodiscard]] std::string yaml_text(double value);
 [[nodiscard]] std::string yaml_text(const Eigen::Vector3d& value);

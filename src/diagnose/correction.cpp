@@ -6,22 +6,22 @@
 
 #include "coast/geo/earth.hpp"
 #include "coast/record/error.hpp"
-#include "mission_run.hpp"
-#include "noise_scan.hpp"
+#include "evidence/mission_run.hpp"
+#include "evidence/noise_scan.hpp"
 
 namespace coast::diagnose {
 
 namespace {
 
-/// Coefficients that hold at an instant.
-Eigen::VectorXd coefficients_at(geo::GpsTime t, const std::vector<Taken>& taken, Eigen::Index size) {
+/// Coefficients valid at an instant.
+Eigen::VectorXd coefficients_at(geo::GpsTime t, const std::vector<SelectedEffect>& effects, Eigen::Index size) {
   Eigen::VectorXd c = Eigen::VectorXd::Zero(size);
-  for (const Taken& one : taken)
+  for (const SelectedEffect& one : effects)
     if (one.holds(t)) c(one.hypothesis) += one.value;
   return c;
 }
 
-constexpr double kLevelStep = 0.5;  // s, over which a noise level is a mean
+constexpr double kLevelStep = 0.5;  // s, interval of a mean noise level
 
 std::vector<geo::GpsTime> instants(const std::vector<record::NavState>& path, double step) {
   std::vector<geo::GpsTime> t;
@@ -37,14 +37,14 @@ const record::NavState& nearest(const std::vector<record::NavState>& path, geo::
   return *behind;
 }
 
-void correct_samples(const std::vector<Taken>& taken, const Hypotheses& hypotheses, const std::vector<record::NavState>& path,
-                     record::ImuRecording& imu) {
+void correct_samples(const std::vector<SelectedEffect>& effects, const Hypotheses& hypotheses,
+                     const std::vector<record::NavState>& path, record::ImuRecording& imu) {
   Eigen::Matrix3Xd gyro(3, hypotheses.size());
   Eigen::Matrix3Xd accel(3, hypotheses.size());
   const record::ImuRecording recorded = imu;
   for (std::size_t i = 0; i < imu.samples.size(); ++i) {
     record::ImuSample& sample = imu.samples[i];
-    const Eigen::VectorXd c = coefficients_at(sample.t, taken, hypotheses.size());
+    const Eigen::VectorXd c = coefficients_at(sample.t, effects, hypotheses.size());
     if (c.isZero(0.0)) continue;
     gyro.setZero();
     accel.setZero();
@@ -54,15 +54,16 @@ void correct_samples(const std::vector<Taken>& taken, const Hypotheses& hypothes
   }
 }
 
-void correct_fixes(const std::vector<Taken>& taken, const Hypotheses& hypotheses, const std::vector<record::NavState>& path,
-                   const estimate::Mission& mission, const estimate::StateLayout& layout, record::GnssRecording& gnss) {
+void correct_fixes(const std::vector<SelectedEffect>& effects, const Hypotheses& hypotheses,
+                   const std::vector<record::NavState>& path, const estimate::Mission& mission,
+                   const estimate::StateLayout& layout, record::GnssRecording& gnss) {
   const std::vector<record::ImuSample>& samples = mission.imu.samples;
   const Eigen::Vector3d earth_e(0.0, 0.0, mission.earth_rate);
   Eigen::MatrixXd D(3, hypotheses.size());
   for (record::GnssFix& fix : gnss.fixes) {
     const geo::GpsTime t = fix.t - mission.time_offset_s;
     if (t < path.front().t || t > path.back().t) continue;
-    const Eigen::VectorXd c = coefficients_at(t, taken, hypotheses.size());
+    const Eigen::VectorXd c = coefficients_at(t, effects, hypotheses.size());
     if (c.isZero(0.0)) continue;
     const auto sample = std::min(std::ranges::upper_bound(samples, t, {}, &record::ImuSample::t), samples.end() - 1);
     const record::NavState& nav = nearest(path, t);
@@ -82,7 +83,7 @@ void correct_fixes(const std::vector<Taken>& taken, const Hypotheses& hypotheses
   }
 }
 
-/// The base by less along north, east or down: fixes and a start that is known in its frame follow.
+/// Moves the base back along north, east or down: fixes and a start known in its frame are moved too.
 void move_base(MissionInput& input, Eigen::Index axis, double offset) {
   const auto move = [&](Eigen::Vector3d& r_e) { r_e -= offset * geo::C_n_e(geo::geodetic_from_ecef(r_e)).col(axis); };
   for (record::GnssFix& fix : input.gnss.fixes) move(fix.r_ea_e);
@@ -91,12 +92,12 @@ void move_base(MissionInput& input, Eigen::Index axis, double offset) {
 
 }  // namespace
 
-MissionInput without(const std::vector<Taken>& taken, const MissionInput& input, const Hypotheses& hypotheses,
+MissionInput without(const std::vector<SelectedEffect>& effects, const MissionInput& input, const Hypotheses& hypotheses,
                      const std::vector<record::NavState>& path, const estimate::Mission& mission,
                      const estimate::StateLayout& layout) {
   MissionInput result = input;
-  std::vector<Taken> in_recordings;
-  for (const Taken& one : taken) {
+  std::vector<SelectedEffect> in_recordings;
+  for (const SelectedEffect& one : effects) {
     const Hypothesis& h = hypotheses[one.hypothesis];
     if (!h.effect->configure || one.from || one.to) {
       in_recordings.push_back(one);
@@ -124,7 +125,7 @@ MissionInput without(const std::vector<NamedEffect>& effects, const MissionInput
   const MissionRun run(input, grade_of(input.setup.model), suggested, progress);
   const int week = input.imu.samples.front().t.week();
   const std::vector<Hypothesis>& all = run.hypotheses().all();
-  std::vector<Taken> taken;
+  std::vector<SelectedEffect> selected;
   for (const NamedEffect& one : effects) {
     if (one.effect == nullptr || one.effect->needs_reference) continue;
     const auto h = std::ranges::find_if(all, [&](const Hypothesis& x) { return x.effect == one.effect && x.axis == one.axis; });
@@ -133,12 +134,12 @@ MissionInput without(const std::vector<NamedEffect>& effects, const MissionInput
           {input.imu.source, 0,
            fmt::format("nothing that {} could act on: {}", one.effect->name, run.hypotheses().why_not_seen(*one.effect)),
            "no such effect, or a run that shows it", ""});
-    Taken t{h - all.begin(), {}, {}, one.value};
+    SelectedEffect t{h - all.begin(), {}, {}, one.value};
     if (one.from_s) t.from = geo::GpsTime::from_week(week, *one.from_s);
     if (one.to_s) t.to = geo::GpsTime::from_week(week, *one.to_s);
-    taken.push_back(t);
+    selected.push_back(t);
   }
-  MissionInput result = without(taken, input, run.hypotheses(), run.path(), run.mission(), run.layout());
+  MissionInput result = without(selected, input, run.hypotheses(), run.path(), run.mission(), run.layout());
   const std::vector<geo::GpsTime> t = instants(run.path(), kLevelStep);
   for (const NamedEffect& one : effects)
     if (one.noise != nullptr)

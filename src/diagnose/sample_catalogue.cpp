@@ -32,7 +32,7 @@ AxisSeries axis_series(const MissionInput& input, Site site, int axis) {
 void raise_noise(MissionInput& input, Site site, int axis, const std::vector<RaisedNoise>& stretches) {
   const double stated = input.setup.model.white_density(sensor_of(site), axis).value;
   if (!(stated > 0.0)) return;
-  // Where levels begin and end: those that are there, and the new ones.
+  // Begins and ends of levels: the existing and the new ones.
   std::vector<geo::GpsTime> edges{input.imu.samples.front().t - input.imu.samples.front().dt, input.imu.samples.back().t};
   for (const record::NoiseLevel& level : input.imu.noise) edges.insert(edges.end(), {level.from, level.to});
   for (const RaisedNoise& one : stretches) edges.insert(edges.end(), {one.from, one.to});

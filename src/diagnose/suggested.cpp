@@ -20,7 +20,7 @@ std::string_view unit_of(Site site) {
   return site == Site::kGyro ? "rad/s" : "m/s^2";
 }
 
-/// An effect with the words that it refers to.
+/// An effect with the strings that it refers to.
 struct Worded : Effect {
   std::string equation_text;
   std::string relation_text;
@@ -35,7 +35,7 @@ std::shared_ptr<Worded> worded(std::string_view name, Site site) {
   auto effect = std::make_shared<Worded>();
   effect->name = name;
   effect->site = site;
-  // Nothing says how large it may be: as a bias of a consumer IMU, of any grade.
+  // Its size is unknown: as a bias of a consumer IMU, for any grade.
   effect->plausible.fill(site == Site::kGyro ? 500.0 * kDegreePerHour : 10.0 * kMilliG);
   return effect;
 }
@@ -79,7 +79,7 @@ EffectPtr unknown_relation(Site site, int axis, const std::string& relation) {
   effect->separating_manoeuvre = "Another mission: a relation found by search is believed when it is found again.";
   effect->source = "Brunton, Proctor & Kutz (2016), sparse regression";
   effect->axes = {axis_name};
-  effect->plausible.fill(1e6);  // of a coefficient with any unit nothing is known
+  effect->plausible.fill(1e6);  // a coefficient with any unit has no prior
   effect->sensors = [site, axis, relation = *known](const Signals& s, SensorErrors& errors) {
     of(site, errors)(axis, 0) = relation.of(basic_signals(s));
   };

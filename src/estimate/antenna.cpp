@@ -49,7 +49,7 @@ void add_antenna_velocity(const Antenna& a, const UpdateContext& context, double
 void add_rate(const Eigen::Matrix3d& A, const UpdateContext& context, Eigen::MatrixXd& H) {
   for (const auto& block : context.layout.sensors()) {
     if (block.sensor != noise::Sensor::kGyro) continue;
-    // omega(est) = omega - response * input * de: what the gyro is thought to add has been taken out of the rate.
+    // omega(est) = omega - response * input * de: the gyro's estimated additive errors are already subtracted from the rate.
     const double input = block.signal_b ? block.signal_b->dot(context.omega_eb_b) : 1.0;
     const Eigen::Vector3d column = -input * (A * block.response_b);
     H.middleCols(block.offset, block.size) += column * block.output;

@@ -13,8 +13,8 @@ record::NavCovariance covariance_of(const NavRows& PN, const Knot& knot) {
   return nav_covariance_n(nav, knot.post.nav.r_eb_e);
 }
 
-/// States in units of their own sigma: metres and radians side by side would cost digits. A state that is known counts in its
-/// own unit: whatever is divided by it is multiplied by it again.
+/// States in units of their own sigma: metres and radians together would lose digits. A known state has unit scale: any
+/// division by it is undone by a multiplication.
 Eigen::VectorXd sigmas(const Eigen::MatrixXd& P) {
   return P.diagonal().unaryExpr([](double variance) { return variance > 0.0 ? std::sqrt(variance) : 1.0; });
 }
@@ -79,7 +79,7 @@ void BackwardRecursion::through_update(const AppliedUpdate& u) {
   const Eigen::VectorXd gained = u.K.transpose() * r_;
   r_.noalias() += u.H.transpose() * (u.S_inv * u.y - gained);
   if (carries_ == Carries::kVector) return;
-  // (I - K H)' N (I - K H) + H' S^-1 H, one factor after the other: where a fix ends a long outage I - K H is small, and
+  // (I - K H)' N (I - K H) + H' S^-1 H, one factor after the other: if a fix ends a long outage I - K H is small, and
   // multiplied out the product would be the difference of terms 1e8 times as large.
   const Eigen::MatrixXd NK = N_ * u.K;
   N_.noalias() -= NK * u.H;

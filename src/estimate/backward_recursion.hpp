@@ -6,22 +6,22 @@
 
 namespace coast::estimate {
 
-/// r and N of docs/notation.md, taken from knot to knot towards the start.
+/// r and N of docs/notation.md, propagated from knot to knot towards the start.
 class BackwardRecursion {
  public:
-  enum class Carries { kBoth, kVector };  ///< r and N, or r alone, which needs no N
+  enum class Carries { kBoth, kVector };  ///< r and N, or only r, which does not need N
   explicit BackwardRecursion(const StateLayout& layout, Carries carries = Carries::kBoth);
-  /// Begins behind a knot's updates with what lies beyond the recording at hand.
+  /// Begins after a knot's updates, with the information from after the end of this recording.
   void begin(const Knot& knot, const Future& behind);
-  /// Between a knot and the next one, its interval.
+  /// From the next knot back to this one, over its interval.
   void through_transition(const Knot& knot);
-  /// A knot's updates, the last one first, and what happened to the carrier slots before them.
+  /// A knot's updates, the last one first, and the changes of the carrier slots before them.
   void through_updates(const Knot& knot);
   /// One of them.
   void through_update(const AppliedUpdate& update);
-  /// These hold behind the knot's updates.
+  /// These are valid after the knot's updates.
   [[nodiscard]] SmoothedKnot smoothed(const Knot& knot, bool with_states) const;
-  /// The state alone, which r is enough for.
+  /// Only the state, for which r suffices.
   [[nodiscard]] SmoothedKnot smoothed_state(const Knot& knot) const;
   [[nodiscard]] Future future(const Knot& knot) const;
   [[nodiscard]] const Eigen::VectorXd& r() const { return r_; }

@@ -18,7 +18,7 @@ namespace coast::estimate {
 
 namespace {
 
-constexpr double kLeastPrior = 1e-8;  ///< of a state that is known at the start, in driving noise of a second
+constexpr double kLeastPrior = 1e-8;  ///< of a state known at the start, as driving noise over this time, s
 
 bool is_gnss(UpdateKind kind) {
   return kind == UpdateKind::kGnssPosition || kind == UpdateKind::kGnssVelocity;
@@ -30,7 +30,7 @@ std::int64_t installed_memory() {
 
 ChainMatrix matrix_within(const std::optional<std::int64_t>& most_bytes, const KnotStore& knots,
                           const BatchUnknowns& unknowns) {
-  constexpr double kShare = 0.8;  // of what is installed: recordings and curves want some, too
+  constexpr double kShare = 0.8;  // of the installed memory: recordings and curves need some, too
   const auto links = static_cast<Eigen::Index>(knots.size());
   const auto size = static_cast<Eigen::Index>(unknowns.at_knots().size());
   const auto border = static_cast<Eigen::Index>(unknowns.unknown_once().size());
@@ -167,7 +167,7 @@ void BatchProblem::add_measurements(std::size_t knot, const BatchStates& states,
     const double weight = is_gnss(m.what.kind) ? loss_.weight(u2) : 1.0;
     weights_[next_measurement_] = weight;
     add_equations(knot, std::sqrt(weight) * R.matrixL().solve(z->H), -std::sqrt(weight) * nu);
-    if (is_gnss(m.what.kind)) cost_ += dof * (loss_.value(u2) - weight * u2);  // in place of the weighted square
+    if (is_gnss(m.what.kind)) cost_ += dof * (loss_.value(u2) - weight * u2);  // instead of the weighted square
   }
 }
 
@@ -231,7 +231,7 @@ Eigen::VectorXd BatchProblem::errors_at(std::size_t knot, const Eigen::VectorXd&
 
 namespace {
 
-/// The covariance of some first states of a knot from that of the same unknowns there and of the mission's.
+/// The covariance of the first states of a knot from that of its unknowns and of the mission's.
 Eigen::MatrixXd covariance_of(std::vector<Eigen::Index> rows, Eigen::Index border, const Eigen::MatrixXd& own,
                               const Eigen::MatrixXd& of_mission, const SelectedInverse& inverse) {
   for (Eigen::Index i = 0; i < of_mission.cols(); ++i) rows.push_back(border + i);

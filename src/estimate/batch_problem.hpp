@@ -1,5 +1,5 @@
 #pragma once
-// The least-squares problem of a mission: linearised and gathered into normal equations; private to the room.
+// The least-squares problem of a mission: linearised, as normal equations; private to the room.
 
 #include <vector>
 
@@ -22,12 +22,12 @@ class BatchProblem {
   BatchProblem(const Mission& mission, const StateLayout& layout, const FilterOptions& options, const FilterState& start,
                const KnotStore& knots, const std::vector<KnotMeasurement>& measurements, const BatchOptions& batch);
 
-  /// The filtered states; those that are one for the mission as they are at its end, which knows most.
+  /// The filtered states; those constant for the mission with their final estimates, which use most data.
   [[nodiscard]] BatchStates filtered();
   /// Linearises everything at the states: normal() d = right(), with d the errors of the states.
   /// @return  cost
   double linearise(const BatchStates& states);
-  /// Takes errors out of the states.
+  /// Subtracts errors from the states.
   void remove(const Eigen::VectorXd& d, BatchStates& states);
   /// Covariance of the navigation states at a knot, and of all states there.
   [[nodiscard]] Eigen::MatrixXd nav_covariance(std::size_t knot, const SelectedInverse& inverse);
@@ -68,7 +68,7 @@ class BatchProblem {
   std::vector<double> weights_;
   std::size_t next_measurement_ = 0;
   double cost_ = 0.0;
-  // Kept for their memory.
+  // Members to reuse their memory.
   Eigen::MatrixXd Phi_, W_, G_;
   FilterState at_knot_;
 };

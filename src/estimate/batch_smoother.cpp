@@ -42,7 +42,7 @@ double RobustLoss::weight(double u2) const {
 
 namespace {
 
-// Mean square of a step in the metric of the normal equations. The step after one so small would be its square; rounding of
+// Mean square of a step in the metric of the normal equations. The step after this would be its square; rounding of
 // coordinates (1e-9 m, against 1e-5 m of driving noise between knots) keeps it above 1e-9.
 constexpr double kRest = 1e-7;
 

@@ -1,5 +1,5 @@
 #pragma once
-// Which states are unknowns at every knot, and which are one for the mission; private to the room.
+// Which states are unknowns at every knot, and which are one unknown for the mission; private to the room.
 
 #include <Eigen/Core>
 #include <vector>
@@ -8,24 +8,24 @@
 
 namespace coast::estimate {
 
-/// States with driving noise have a value at every knot. One without moves as its process says from what it was at the start:
-/// as unknowns at every knot they would be tied by equations without noise, which no weight can state.
+/// States with driving noise have a value at every knot. States without it follow from their value at the start by their
+/// process: as unknowns at every knot they would be coupled by noise-free equations with infinite weight.
 ///
-/// With a base offset b the unknown at a knot is not the position r but r + b, which is what fixes measure: r and b themselves
-/// differ by what nothing but the prior knows, and normal equations in them are a thousand times as ill-conditioned.
+/// With a base offset b the unknown at a knot is not the position r but r + b, which is measured by fixes: r and b separately
+/// are determined only by the prior, and normal equations in them have a condition number a thousand times larger.
 class BatchUnknowns {
  public:
-  /// @param start  what its covariance says is known, and has no driving noise, is no unknown
+  /// @param start  states with zero covariance and no driving noise are not unknowns
   BatchUnknowns(const StateLayout& layout, const FilterState& start);
 
   [[nodiscard]] const std::vector<int>& at_knots() const { return at_knots_; }  ///< navigation states first
   [[nodiscard]] const std::vector<int>& once() const { return once_; }
   [[nodiscard]] const std::vector<int>& unknown_once() const { return unknown_once_; }  ///< among them, at the start
 
-  /// What the unknowns of the mission are to the errors of all states `elapsed` after the start, beside those of the knot:
-  /// n x unknown_once(). Until the next call.
+  /// Effect of the mission's unknowns on the errors of all states `elapsed` after the start, in addition to those of the knot:
+  /// n x unknown_once(). Valid until the next call.
   [[nodiscard]] const Eigen::MatrixXd& of_mission(double elapsed);
-  /// once() `elapsed` after the start as it would be with the start's values.
+  /// once() `elapsed` after the start, propagated from the start's values.
   [[nodiscard]] Eigen::VectorXd prior_mean(double elapsed);
 
  private:
@@ -34,7 +34,7 @@ class BatchUnknowns {
   std::vector<int> at_knots_, once_, unknown_once_;
   double elapsed_ = 0.0;
   Eigen::MatrixXd of_mission_, at_start_;
-  bool constant_ = false;  ///< none of once() moves
+  bool constant_ = false;  ///< all of once() are constant
 };
 
 }  // namespace coast::estimate

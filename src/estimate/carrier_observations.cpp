@@ -9,7 +9,7 @@ namespace coast::estimate {
 
 namespace {
 
-/// Clock errors by the time that the receiver showed.
+/// Clock errors by the receiver's displayed time.
 class ReceiverClock {
  public:
   explicit ReceiverClock(const std::vector<carrier::PpkEpoch>& epochs) {
@@ -38,7 +38,7 @@ class ReceiverClock {
 CarrierObservations carrier_observations(carrier::PpkSolution solution, const carrier::PpkOptions& options) {
   CarrierObservations observations;
   observations.options = options;
-  // Over minutes the smoother averages phases to less than what the air does over the shortest baselines.
+  // Over minutes the smoother averages phases to less than the effect of the atmosphere over the shortest baselines.
   const bool air = options.differences.air.troposphere;
   observations.options.air = carrier::AirStates{air, air, solution.air.unbounded};
   observations.options.noise = solution.noise;

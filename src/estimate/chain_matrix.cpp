@@ -20,7 +20,7 @@ std::int64_t ChainMatrix::bytes(Eigen::Index links, Eigen::Index size, Eigen::In
   return elements(links, size, border) * kElement;
 }
 
-// A row of a link: the link before, and its own up to the diagonal. A row of the border: everything up to the diagonal.
+// A row of a link: the previous link, and its own up to the diagonal. A row of the border: everything up to the diagonal.
 ChainMatrix::ChainMatrix(Eigen::Index links, Eigen::Index size, Eigen::Index border)
     : links_(links), size_(size), border_(border), lower_(links * size + border, links * size + border) {
   const std::int64_t count = elements(links, size, border);

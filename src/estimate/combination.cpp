@@ -13,9 +13,9 @@ namespace coast::estimate {
 
 namespace {
 
-constexpr double kRefuse = 1e-6;  // share of knots of consistent filters
+constexpr double kRefuse = 1e-6;  // fraction of knots of consistent filters
 constexpr double kResume = 1e-3;
-constexpr double kChange = 0.5;  // of the trace: only a filter so much better takes over
+constexpr double kChange = 0.5;  // of the trace: only a filter better by this replaces the other
 
 Eigen::LLT<Eigen::MatrixXd> factor(const FilterState& forward, const FilterState& backward, Eigen::Index size) {
   Eigen::LLT<Eigen::MatrixXd> llt(forward.P.topLeftCorner(size, size) + backward.P.topLeftCorner(size, size));
@@ -25,7 +25,7 @@ Eigen::LLT<Eigen::MatrixXd> factor(const FilterState& forward, const FilterState
   return llt;
 }
 
-/// Which of two filters is delivered, knot after knot.
+/// Selection of the filter to be delivered, knot after knot.
 class Choice {
  public:
   enum class Of { kBoth, kForward, kBackward };
@@ -46,7 +46,7 @@ class Choice {
   Of of_ = Of::kBoth;
 };
 
-/// Stretches of knots where nothing was averaged.
+/// Stretches of knots without averaging.
 class Refusals {
  public:
   void add(geo::GpsTime t, bool refused) {
@@ -98,7 +98,7 @@ FilterState reduced(const FilterState& of, Eigen::Index first, Eigen::Index coun
   return s;
 }
 
-/// Sensor states, each by itself: what the backward filter knows beyond its prior, beside what the forward one knows.
+/// Sensor states, each separately: the information of the backward filter beyond its prior, combined with the forward one.
 void weigh_sensors(const BackwardKnots::Sensors& backward, const Eigen::VectorXd& prior_variance, Eigen::Index end,
                    Eigen::VectorXd& x, Eigen::VectorXd& sd) {
   for (Eigen::Index i = kNav; i < end; ++i) {
@@ -122,7 +122,8 @@ FilterState weighted_mean(const FilterState& forward, const FilterState& backwar
   const Eigen::Index m = forward.x.size();
   Eigen::VectorXd d = forward.x - backward.x;
   d.head<kNav>() = error_between(forward.nav, backward.nav);
-  // States without variance would make P_f + P_b singular: their rows and columns are zero, and any pivot leaves them be.
+  // States without variance would make P_f + P_b singular: their rows and columns are zero, and any pivot leaves them
+  // unchanged.
   FilterState b = backward;
   for (Eigen::Index i = kNav; i < m; ++i)
     if (!(prior_variance(i - kNav) > 0.0)) b.P(i, i) = 1.0;
@@ -131,8 +132,8 @@ FilterState weighted_mean(const FilterState& forward, const FilterState& backwar
   FilterState both = forward;
   both.P = rest * forward.P * rest.transpose() + W * b.P * W.transpose();
   remove_error(W * d, both.nav, both.x);
-  // A prior counted twice is a measurement too much; one of negative variance takes it out. Together both filters know the
-  // state twice as well as beforehand at least, so the denominator is at least half the prior.
+  // A prior counted twice is one measurement too many; one of negative variance removes it. Together both filters have at least
+  // twice the prior's information on the state, so the denominator is at least half the prior.
   for (Eigen::Index i = kNav; i < m; ++i) {
     const double prior = prior_variance(i - kNav);
     if (!(prior > 0.0)) continue;
@@ -186,7 +187,7 @@ const BackwardKnots::Sensors* BackwardKnots::sensors(std::size_t knot) const {
 
 namespace {
 
-/// A knot of the combined solution: `state` holds navigation and auxiliary states, x and sd the rest where they are kept.
+/// A knot of the combined solution: `state` holds navigation and auxiliary states, x and sd the others if they are kept.
 SmoothedKnot delivered(const FilterState& state, Eigen::VectorXd x, Eigen::VectorXd sd, Eigen::Index first_auxiliary) {
   SmoothedKnot knot;
   knot.nav = state.nav;

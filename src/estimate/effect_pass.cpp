@@ -10,7 +10,7 @@ namespace coast::estimate {
 
 namespace {
 
-/// Columns of the transition by which a unit of every coefficient reaches the navigation states within an interval, with the
+/// Columns of the transition: effect of a unit of every coefficient on the navigation states within an interval, with the
 /// sign of the error of a state: estimate - truth.
 class DrivenColumns {
  public:
@@ -24,7 +24,7 @@ class DrivenColumns {
         gyro_e_(gyro_b_),
         accel_e_(gyro_b_) {}
 
-  /// From a knot to the next.
+  /// From a knot to the next one.
   void over(const Knot& knot, geo::GpsTime end) {
     navigator_.set(knot.post);
     W_.setZero();
@@ -70,11 +70,11 @@ class DrivenColumns {
   Navigator navigator_;
   Fold fold_;
   NavRows W_;
-  Eigen::Matrix3Xd gyro_b_, accel_b_;  ///< of the sample at hand
+  Eigen::Matrix3Xd gyro_b_, accel_b_;  ///< of the current sample
   Eigen::Matrix3Xd gyro_e_, accel_e_;  ///< integrals over the fold
 };
 
-/// r and N of states and coefficients side by side. The coefficients are constants that the filter does not estimate: their
+/// r and N of states and coefficients together. The coefficients are constants that the filter does not estimate: their
 /// rows of the gain are zero,
 ///
 ///     Phi = [Phi_x W; 0 I],   H = [H_x D],   K = [K_x; 0].
@@ -133,7 +133,7 @@ class EffectRecursion {
     M.topRows<kNav>().setZero();
     M.topRows(nav.rows()) += nav;
   }
-  // As through_update, with innovations out of the filter's own covariance.
+  // As through_update, with innovations drawn from the filter's own covariance.
   void draw(const AppliedUpdate& u, const Eigen::MatrixXd& D) {
     if (null_.cols() == 0) return;
     Eigen::MatrixXd S_inv_y(u.y.size(), null_.cols());
@@ -158,7 +158,7 @@ class EffectRecursion {
   Eigen::MatrixXd null_x_, null_;
 };
 
-/// It moves the states as it did and its innovation is not asked.
+/// An update with the same gain whose innovation is not used.
 AppliedUpdate silent(AppliedUpdate update) {
   update.S_inv.setZero();
   return update;

@@ -30,7 +30,7 @@ AuxiliaryStates with_slots(AuxiliaryStates auxiliary, const CarrierObservations*
 }
 
 void check_members(const record::MemberBlocks& recorded, const StateLayout& layout) {
-  if (recorded.names.empty() || layout.members().empty()) return;  // a model of the sum alone leaves them aside
+  if (recorded.names.empty() || layout.members().empty()) return;  // a model of the sum only does not use them
   std::vector<std::string> names;
   bool noisy = true;
   for (const StateLayout::Member& member : layout.members()) {
@@ -52,12 +52,12 @@ ForwardFilter::ForwardFilter(const Mission& mission, const noise::ImuErrorModel&
     : mission_(mission), options_(options), layout_(model, mission.C_s_b, with_slots(options.auxiliary, mission.carrier)) {
   if (!(options.knot_interval_s > 0.0)) throw std::invalid_argument("FilterOptions::knot_interval_s must be above zero");
   check_members(mission.imu.members, layout_);
-  // A start that stands in an outage has seen what the outage withholds.
+  // A restart within an outage uses data that the outage withholds.
   std::erase_if(mission_.restarts, [&](const Restart& restart) {
     const geo::GpsTime tagged = restart.nav.t + mission.time_offset_s;
     return std::ranges::any_of(options.withheld, [&](const Withheld& span) { return span.contains(tagged); });
   });
-  // The closed form that carries driving noise into the navigation states within an interval wants it short.
+  // The closed form for the effect of driving noise on the navigation states within an interval requires short intervals.
   knot_interval_ = std::min(options.knot_interval_s, std::max(0.2 * layout_.shortest_time(), 2.0 / mission.imu.rate_hz));
 }
 

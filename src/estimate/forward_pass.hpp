@@ -21,7 +21,7 @@ class ForwardPass {
 
  private:
   void begin(const Navigator::Start& start, const Eigen::MatrixXd& P);
-  /// Those that a run which begins there has no use for, and instants of knots.
+  /// Skips those not used by a run that begins there, and instants of knots.
   void skip_measurements(geo::GpsTime before);
   [[nodiscard]] geo::GpsTime next_knot_time(geo::GpsTime end) const;
   [[nodiscard]] std::size_t gnss_epochs() const;
@@ -35,20 +35,20 @@ class ForwardPass {
   [[nodiscard]] const std::vector<record::MemberBlocks::Block>& member_blocks() const;
   void member_updates(std::size_t index);
   void note_refused_members();
-  /// @return whether it was used; nothing where it does not apply
+  /// @return whether it was used; none if it does not apply
   std::optional<bool> try_update(const Measurement& measurement, record::FixQuality quality = record::FixQuality::kUnknown);
   [[nodiscard]] bool gate_refuses(const Linearised& measurement, double nis);
-  /// Where the code of one receiver alone sees the antenna, less where the filter has it.
+  /// Antenna position from single-receiver code, minus that of the filter.
   [[nodiscard]] std::optional<Eigen::Vector3d> seen_alone(const carrier::DifferenceEpoch& epoch,
                                                           const UpdateContext& here) const;
-  /// Of positions. @return whether the filter has refused for so long that it is wrong itself
+  /// For positions. @return whether the filter has rejected them for so long that the filter itself is wrong
   bool refuse(const Eigen::Vector3d& nu_e);
   void note_opened(const Eigen::Vector3d& nu_n);
   [[nodiscard]] bool coasting() const;
   void admit_doubt(const Eigen::Vector3d& nu);
   void record_innovation(const Linearised& measurement, const Innovation& innovation, bool used, record::FixQuality quality);
   void emit_epochs(const record::NavCovariance& at_end);
-  /// Hands the last knot, complete now, to those who want it.
+  /// Delivers the last knot, now complete, to the outputs.
   void deliver_knot();
   [[nodiscard]] bool keeps_knots() const { return outputs_.knots != nullptr || outputs_.closed_knots; }
   void check_finite() const;
@@ -64,23 +64,23 @@ class ForwardPass {
   Propagation propagation_;
   FilterState state_;                                    ///< valid at knots
   Eigen::Matrix3d C_n_e_ = Eigen::Matrix3d::Identity();  ///< at the last knot
-  Knot knot_;                                            ///< the last one, waiting for its transition
+  Knot knot_;                                            ///< the last one, before its transition
   bool have_knot_ = false;
 
   SampleCursor cursor_;
   std::size_t next_fix_ = 0;
-  std::size_t next_stop_ = 0;  ///< of options_.knots_at
+  std::size_t next_stop_ = 0;  ///< index in options_.knots_at
   std::size_t next_restart_ = 0;
-  std::size_t next_block_ = 0;  ///< of the members
+  std::size_t next_block_ = 0;  ///< index in the members' blocks
   struct MemberCount {
     std::size_t met = 0;
     std::size_t refused = 0;
   };
-  std::vector<MemberCount> member_counts_;  ///< of the differences of each member
+  std::vector<MemberCount> member_counts_;  ///< for the differences of each member
   std::optional<TightCoupling> tight_;
   geo::GpsTime last_constraint_;
   geo::GpsTime first_refused_;
-  geo::GpsTime last_used_;  ///< position fix
+  geo::GpsTime last_used_;  ///< last used position fix
   enum class GateState { kClosed, kRefusing, kOpen } gate_state_ = GateState::kClosed;
   std::vector<record::NavState> buffer_;
   record::NavCovariance cov_at_start_;

@@ -9,7 +9,7 @@ namespace coast::estimate {
 
 namespace {
 
-// A knot is a flat run of doubles; integers travel in their bits. What the nominal trajectory needs comes first.
+// A knot is a flat sequence of doubles; integers are stored by their bits. Data for the nominal trajectory come first.
 class Packer {
  public:
   explicit Packer(double* out) : out_(out) {}
@@ -115,7 +115,7 @@ void KnotStore::append(const Knot& knot) {
   if (memory_.size() > limit_) spill();
   const std::size_t begin = memory_.size();
   const std::size_t size = packed_size(knot);
-  if (memory_.capacity() == 0) memory_.reserve(limit_ + 2 * size);  // untouched it costs nothing, growing would copy it all
+  if (memory_.capacity() == 0) memory_.reserve(limit_ + 2 * size);  // unused it costs nothing, growing would copy it all
   offsets_.push_back(spilled_ + begin);
   times_.push_back(knot.post.nav.t);
   memory_.resize(begin + size);
@@ -203,7 +203,7 @@ Knot KnotStore::at(std::size_t index) const {
 
 Knot KnotStore::nominal_at(std::size_t index) const {
   std::vector<double> buffer;
-  // The number of states stands in front; one double is read twice rather than the covariance for nothing.
+  // The number of states comes first; one double is read twice to avoid reading the covariance.
   const auto n = static_cast<Eigen::Index>(std::bit_cast<std::int64_t>(*data(index, 1, buffer)));
   Unpacker unpack(data(index, nominal_size(n), buffer));
   return unpack_nominal(unpack);

@@ -1,5 +1,5 @@
 #pragma once
-// What is measured at a knot, in a form that can be linearised again elsewhere; private to the room.
+// Measurement at a knot, in a form that can be linearised at another state; private to the room.
 
 #include <optional>
 
@@ -7,7 +7,7 @@
 
 namespace coast::estimate {
 
-/// The measurement at the state. @return  nothing where it does not apply
+/// The measurement at the state. @return  none if it does not apply
 [[nodiscard]] std::optional<Linearised> linearise(const Measurement& measurement, const Mission& mission,
                                                   const FilterOptions& options, const FilterState& state,
                                                   const UpdateContext& context);

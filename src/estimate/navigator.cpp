@@ -62,8 +62,8 @@ ins::RawIncrement Navigator::coasting(double dt) const {
           dt * accel_inverse_.partialPivLu().solve(C_e_b * force_e + accel_offset_)};
 }
 
-// How an increment is shared out is judged by how it differs from the one before, both freed of errors: beside a corrected
-// increment the bias of a raw one would look like an acceleration. What is taken off is shared out evenly.
+// An increment is divided according to its difference from the previous one, both corrected for errors: next to a corrected
+// increment the bias of a raw one would look like an acceleration. The correction itself is divided evenly.
 ins::SplitIncrement Navigator::split(const ins::RawIncrement& raw, double fraction) const {
   const ins::RawIncrement whole = without_errors(raw);
   ins::SplitIncrement parts = ins::split(previous_, whole, fraction);

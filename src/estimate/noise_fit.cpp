@@ -29,7 +29,7 @@ namespace {
 
 using Eigen::Index;
 
-/// The mission with these fixes in place of its own and of carrier phases. A member more in Mission does not compile here.
+/// The mission with these fixes instead of its own and of carrier phases. A further member of Mission must be added here.
 Mission with_fixes(const Mission& mission, const record::GnssRecording& fixes) {
   const auto& [imu, gnss, increments, C_s_b, lever_arm_b, time_offset_s, standstill, earth_rate, first_epoch, carrier,
                restarts] = mission;
@@ -56,10 +56,10 @@ Eigen::VectorXd logarithms(const NoiseAdjustment& from, const std::vector<NoiseP
   return theta;
 }
 
-/// Of each parameter, with all others free; infinite where the data do not tell it. Before them a logarithm is known to a
-/// factor of twenty or so, which keeps what they do not tell from spreading to what they do.
+/// For each parameter, with all others free; infinite if the data have no information. As prior a logarithm is known to a
+/// factor of twenty or so, so that unobservable parameters do not affect observable ones.
 std::vector<double> deviations(const Eigen::MatrixXd& information) {
-  constexpr double kBefore = 0.1;  // information
+  constexpr double kBefore = 0.1;  // prior information
   constexpr double kUnknown = 2.0;
   const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(information);
   const Eigen::VectorXd variance = (solver.eigenvalues().cwiseMax(0.0).array() + kBefore).inverse();
@@ -70,7 +70,7 @@ std::vector<double> deviations(const Eigen::MatrixXd& information) {
   return known;
 }
 
-// What the optimum gains over the stated noise, and how well it is known.
+// The gain of the optimum over the stated noise, and its uncertainty.
 void describe(const NoiseObjective& objective, const std::vector<NoiseParameter>& parameters, const NoiseAdjustment& as_stated,
               const SearchPoint& optimum, NoiseFit& fit) {
   const auto log_likelihood_without = [&](const NoiseParameter& p) {
@@ -80,7 +80,7 @@ void describe(const NoiseObjective& objective, const std::vector<NoiseParameter>
     try {
       return objective.run(other).log_likelihood;
     } catch (const NumericalError&) {
-      return -std::numeric_limits<double>::infinity();  // it is needed for the filter to hold
+      return -std::numeric_limits<double>::infinity();  // the filter fails without it
     }
   };
   const FilterResult stated = objective.run(as_stated);
@@ -101,10 +101,10 @@ std::vector<Bound> bounds_met(const Eigen::VectorXd& theta, const SearchBox& box
   return met;
 }
 
-/// Leaves out the fixes that a filter with its gate shut refuses. @return  whether there are any
+/// Omits the fixes rejected by a filter with closed gate. @return  whether there are any
 bool leave_out_refused(const ForwardFilter& filter, const FilterState& start, double time_offset_s,
                        std::vector<record::GnssFix>& fixes) {
-  constexpr double kLargestShare = 0.05;  // more is not a few bad fixes but a model that does not fit
+  constexpr double kLargestShare = 0.05;  // more means a model that does not fit, not a few bad fixes
   constexpr double kSame = 1e-3;          // s
   std::vector<geo::GpsTime> refused;
   for (const InnovationRecord& r : filter.run(start, {}).innovations)
@@ -131,7 +131,7 @@ NoiseFit fit_noise(const Mission& mission, const noise::ImuErrorModel& model, co
                    const NoiseFitChoice& choice, const NoiseAdjustment& from,
                    const std::function<FilterState(const ForwardFilter&)>& start, const std::function<void(double)>& progress) {
   constexpr double kNearby = 5e-3;   // of the log-likelihood: a tenth of a sigma
-  constexpr double kSettled = 1e-3;  // what the gate refuses does not change by it
+  constexpr double kSettled = 1e-3;  // the fixes rejected by the gate do not change by it
   const bool velocities = options.use_gnss_velocity &&
                           std::ranges::any_of(mission.gnss.fixes, [](const auto& fix) { return fix.velocity.has_value(); });
   const std::vector<NoiseParameter> parameters = free_parameters(choice, velocities);
@@ -140,13 +140,13 @@ NoiseFit fit_noise(const Mission& mission, const noise::ImuErrorModel& model, co
   const Mission cleaned = with_fixes(mission, clean);
   NoiseObjective objective(cleaned, model, options, parameters, from, start);
   const Likelihood likelihood{[&](const Eigen::VectorXd& theta) {
-                                // Their number is not known beforehand.
+                                // Their number is unknown beforehand.
                                 if (progress) progress(1.0 - 1.0 / (1.0 + 0.05 * objective.passes()));
                                 return objective.value(theta);
                               },
                               [&] { return objective.scores(); }};
   SearchState search{point_at(likelihood, logarithms(from, parameters, box)), {}};
-  if (!std::isfinite(search.at.value)) static_cast<void>(objective.run(objective.at(search.at.theta)));  // throws what broke it
+  if (!std::isfinite(search.at.value)) static_cast<void>(objective.run(objective.at(search.at.theta)));  // throws the cause
   climb(likelihood, box, kNearby, search);
   NoiseFit fit;
   if (choice.to_the_optimum) {
@@ -154,7 +154,7 @@ NoiseFit fit_noise(const Mission& mission, const noise::ImuErrorModel& model, co
     climb(likelihood, box, kSettled, search);
     const NoiseAdjustment fitted = objective.at(search.at.theta);
     const ForwardFilter filter(cleaned, adjusted(model, fitted), adjusted(options, fitted));
-    // What the gate of the fitted filter refuses must not have shaped the fit.
+    // Fixes rejected by the gate of the fitted filter must not affect the fit.
     if (leave_out_refused(filter, start(filter), mission.time_offset_s, clean.fixes)) {
       search.at = point_at(likelihood, search.at.theta);
       climb(likelihood, box, kSettled, search);

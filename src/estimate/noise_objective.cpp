@@ -47,7 +47,7 @@ ForwardFilter NoiseObjective::filter_at(const NoiseAdjustment& adjustment) const
   return ForwardFilter(mission_, adjusted(model_, adjustment), adjusted(options_, adjustment));
 }
 
-// No pass is needed for it.
+// Does not need a pass.
 StartSlope NoiseObjective::start_slope(Eigen::Index parameter) const {
   constexpr double kStep = 1e-4;  // its square is the error, relative
   const auto start_at = [&](double step) {

@@ -1,5 +1,5 @@
 #pragma once
-// The likelihood that the noise is fitted by; private to the room.
+// The likelihood used for the fit of the noise; private to the room.
 
 #include <atomic>
 #include <functional>
@@ -14,17 +14,17 @@ class NoiseObjective {
  public:
   using Start = std::function<FilterState(const ForwardFilter&)>;
 
-  /// Everything that is referred to must outlive it.
-  /// @param fixed  what the parameters that are not free keep
+  /// All referenced objects must outlive it.
+  /// @param fixed  values of the parameters that are not free
   NoiseObjective(const Mission& mission, const noise::ImuErrorModel& model, const FilterOptions& options,
                  const std::vector<NoiseParameter>& parameters, const NoiseAdjustment& fixed, const Start& start);
 
   [[nodiscard]] NoiseAdjustment at(const Eigen::VectorXd& theta) const;
-  /// A pass, which is kept; minus infinity where the filter breaks: worse than any other set, not an error.
+  /// A pass, which is kept; minus infinity if the filter fails: worse than any other set, not an error.
   [[nodiscard]] double value(const Eigen::VectorXd& theta);
-  /// Where value() was asked for last.
+  /// At the point of the last call of value().
   [[nodiscard]] NoiseScores scores() const;
-  /// A pass beside it, of which nothing is kept. @throws NumericalError  the filter breaks
+  /// An additional pass that is not kept. @throws NumericalError  the filter fails
   [[nodiscard]] FilterResult run(const NoiseAdjustment& adjustment) const;
   [[nodiscard]] int passes() const { return passes_; }
 

@@ -7,7 +7,7 @@
 
 namespace coast::estimate {
 
-/// What a parameter acts on.
+/// The part of the noise affected by a parameter.
 enum class NoisePart {
   kScaleHorizontal,
   kScaleVertical,
@@ -19,7 +19,7 @@ enum class NoisePart {
   kAccel
 };
 
-/// One free parameter: where it lives and its bounds (natural units; searched as a logarithm).
+/// One free parameter: its part and its bounds (natural units; the search uses logarithms).
 struct NoiseParameter {
   NoisePart part;
   const char* name;

@@ -29,7 +29,7 @@ class Places {
 constexpr std::array kOfUpdates{NoisePart::kScaleHorizontal, NoisePart::kScaleVertical, NoisePart::kScaleVelocity,
                                 NoisePart::kGyro, NoisePart::kAccel};
 
-/// dR by the logarithm of a parameter; empty where it does not act on the measurement.
+/// dR with respect to the logarithm of a parameter; empty if it does not affect the measurement.
 ComponentCov slope_of_R(NoisePart part, const Measurement& what, const AppliedUpdate& update, const Eigen::Matrix3d& C_n_e,
                         const NoiseModel& model) {
   const GnssScale& scale = model.adjustment.gnss_scale;
@@ -43,7 +43,7 @@ ComponentCov slope_of_R(NoisePart part, const Measurement& what, const AppliedUp
   }
   if (what.kind == UpdateKind::kGnssVelocity && part == NoisePart::kScaleVelocity)
     return rotated(2.0 * scale.velocity * scale.velocity * model.mission.gnss.fixes[what.index].velocity->cov_n);
-  // All white noise of the members is scaled alike.
+  // White noise of all members has the same factor.
   const NoisePart own = what.sensor == noise::Sensor::kGyro ? NoisePart::kGyro : NoisePart::kAccel;
   if (what.kind == UpdateKind::kMemberDifference && part == own) {
     const auto m = update.y.size();
@@ -54,12 +54,12 @@ ComponentCov slope_of_R(NoisePart part, const Measurement& what, const AppliedUp
   return {};
 }
 
-/// What the backward pass leaves for the forward one.
+/// Results of the backward pass for the forward one.
 struct Disturbances {
   NavVector gyro, accel;             ///< Q r of the white noise in the interval
   std::vector<Components> u;         ///< of the updates
   Eigen::Vector3d gnss;              ///< H' u at the knot, rows of the correlated error
-  Eigen::Vector3d behind, behind_t;  ///< the same of all knots behind it, times exp(-t/tau); times t/tau exp(-t/tau)
+  Eigen::Vector3d behind, behind_t;  ///< the same of all later knots, times exp(-t/tau); times t/tau exp(-t/tau)
 };
 
 class BackwardScores {
@@ -136,7 +136,7 @@ class BackwardScores {
       add(NoisePart::kCorrelatedTime, -2.0 * steps * phi2 * half);
     }
   }
-  // dphi = phi dt/tau; r and N are those before the interval by now, Phi' r and Phi' N Phi.
+  // dphi = phi dt/tau; r and N are now those before the interval, Phi' r and Phi' N Phi.
   void add_decay_of_gnss(const RecordedKnot& knot) {
     const double steps = knot.knot.interval / model_.adjustment.correlated_gnss.time_s;
     const Eigen::VectorXd& r = recursion_.r();
@@ -157,7 +157,7 @@ class BackwardScores {
   Eigen::Vector3d behind_ = Eigen::Vector3d::Zero(), behind_t_ = Eigen::Vector3d::Zero();
 };
 
-/// The filter's answer to the series f_i, in errors d of its estimate: V^-1 f_i is S^-1 e_i.
+/// The filter applied to the series f_i, in errors d of its estimate: V^-1 f_i is S^-1 e_i.
 class InformationPass {
  public:
   explicit InformationPass(const NoiseModel& model)
@@ -200,7 +200,7 @@ class InformationPass {
   [[nodiscard]] const Eigen::MatrixXd& information() const { return information_; }
 
  private:
-  // The correlated error is s^2 exp(-|t|/tau) between any two knots: what its derivatives make of H' u.
+  // The correlated error has covariance s^2 exp(-|t|/tau) between any two knots: effect of its derivatives on H' u.
   void move_gnss(const Disturbances& at) {
     const CorrelatedGnss& gnss = model_.adjustment.correlated_gnss;
     const Eigen::Vector3d s2(gnss.horizontal_m * gnss.horizontal_m, gnss.horizontal_m * gnss.horizontal_m,

@@ -6,23 +6,23 @@
 
 namespace coast::estimate {
 
-/// How the start moves with the logarithm of a parameter.
+/// Derivative of the start with respect to the logarithm of a parameter.
 struct StartSlope {
   Eigen::VectorXd estimate;  ///< in errors: navigation states as error_between() has them
   Eigen::MatrixXd P;
 };
 
-/// What a pass was made with.
+/// Inputs of a pass.
 struct NoiseModel {
   const Mission& mission;
   const StateLayout& layout;
   NoiseAdjustment adjustment;
   const std::vector<NoiseParameter>& parameters;
-  std::vector<StartSlope> start;  ///< of each parameter
+  std::vector<StartSlope> start;  ///< one per parameter
 };
 
 struct NoiseScores {
-  Eigen::VectorXd gradient;     ///< of the log-likelihood by the logarithms of the parameters
+  Eigen::VectorXd gradient;     ///< of the log-likelihood with respect to the logarithms of the parameters
   Eigen::MatrixXd information;  ///< mean of the observed and the expected one
 };
 
@@ -32,11 +32,11 @@ struct NoiseScores {
 ///     R:      1/2 tr[(u u' - D) dR]
 ///     Q, P0:  1/2 tr[(r r' - N) dQ]
 ///     x0:     -r' dx0
-///     Phi:    tr[(r r' - N) dPhi P Phi'] - r' dPhi x,    r and N behind the transition, P and x before it
+///     Phi:    tr[(r r' - N) dPhi P Phi'] - r' dPhi x,    r and N after the transition, P and x before it
 ///
 /// and one forward for the average information (Gilmour, Thompson & Cullis 1995), 1/2 f_i' V^-1 f_j with f_i = dV_i V^-1 y and
-/// V the covariance of all measurements. What the parameters do to the nominal trajectory, about which the filter is
-/// linearised, has no part in them.
+/// V the covariance of all measurements. The effect of the parameters on the nominal trajectory, about which the filter is
+/// linearised, is not included.
 [[nodiscard]] NoiseScores noise_scores(const PassRecord& pass, const NoiseModel& model);
 
 }  // namespace coast::estimate

@@ -11,7 +11,7 @@ namespace {
 
 using Eigen::Index;
 
-/// What a step did to the slopes.
+/// Change of the slopes by a step.
 struct Secant {
   Eigen::VectorXd step, fall;
 };
@@ -21,12 +21,12 @@ void correct(Eigen::MatrixXd& B, const Secant& secant) {
   const double curvature = secant.step.dot(secant.fall);
   const Eigen::VectorXd model_fall = B * secant.step;
   const double modelled = secant.step.dot(model_fall);
-  constexpr double kLeast = 0.05;  // of what was modelled: less is no curvature to go by
+  constexpr double kLeast = 0.05;  // of the modelled change: smaller ones give no curvature
   if (!(modelled > 0.0) || curvature < kLeast * modelled) return;
   B += secant.fall * secant.fall.transpose() / curvature - model_fall * model_fall.transpose() / modelled;
 }
 
-/// Of each parameter, with all others known.
+/// For each parameter, with all others known.
 Eigen::VectorXd sigmas_of_each(const Eigen::MatrixXd& information) {
   constexpr double kLeast = 1.0;
   return information.diagonal().cwiseMax(kLeast).cwiseSqrt().cwiseInverse();
@@ -36,8 +36,8 @@ double promised(const Eigen::VectorXd& g, const Eigen::MatrixXd& B, const Eigen:
   return g.dot(step) - 0.5 * step.dot(B * step);
 }
 
-// A variance that is far too small asks for e times itself at most, however much more is there: of g = m (v'/v - 1) and
-// B = m v'/v a step of s = g/B stands for v' = v / (1 - s).
+// A variance that is far too small gives a step of at most e times itself, however large the true one: for g = m (v'/v - 1) and
+// B = m v'/v a step of s = g/B corresponds to v' = v / (1 - s).
 Eigen::VectorXd lengthened(Eigen::VectorXd step, const Eigen::VectorXd& high) {
   for (Index i = 0; i < step.size(); ++i) {
     if (!(step(i) > 0.0)) continue;
@@ -47,7 +47,7 @@ Eigen::VectorXd lengthened(Eigen::VectorXd step, const Eigen::VectorXd& high) {
   return step;
 }
 
-/// Goes there if that does not lose.
+/// Makes the step if the likelihood does not decrease.
 bool take(const Likelihood& likelihood, const Eigen::VectorXd& step, double least, SearchPoint& at) {
   const double value = likelihood.value(at.theta + step);
   if (!(value > least)) return false;
@@ -57,7 +57,7 @@ bool take(const Likelihood& likelihood, const Eigen::VectorXd& step, double leas
   return true;
 }
 
-/// Shorter steps until one does not lose; false where none does.
+/// Shorter steps until the likelihood does not decrease; false if there is none.
 bool take_some(const Likelihood& likelihood, Eigen::VectorXd step, double least, SearchPoint& at) {
   constexpr int kHalvings = 6;
   for (int k = 0; k <= kHalvings; ++k, step *= 0.5)
@@ -80,7 +80,7 @@ Eigen::VectorXd SearchState::slopes() const {
   return at.scores.gradient + beyond_scores->slopes + beyond_scores->change * (at.theta - beyond_scores->at);
 }
 
-// One coordinate after the other: each is a parabola.
+// One coordinate at a time: the function is a parabola in each.
 Eigen::VectorXd best_step(const Eigen::VectorXd& g, const Eigen::MatrixXd& B, const Eigen::VectorXd& low,
                           const Eigen::VectorXd& high) {
   constexpr int kMostSweeps = 20000;
@@ -104,8 +104,8 @@ void climb(const Likelihood& likelihood, const SearchBox& box, double settled, S
   constexpr int kMostSteps = 40;
   constexpr double kFarthest = 2.0;  // a factor of 7
   constexpr double kFar = 1000.0;    // of the log-likelihood
-  constexpr double kNear = 0.5;      // beyond it a secant says nothing of where it ends
-  constexpr double kNothing = 1e-3;  // of the log-likelihood: what a step may lose to what is not known of the slopes
+  constexpr double kNear = 0.5;      // beyond it a secant gives no information on the curvature at its end
+  constexpr double kNothing = 1e-3;  // of the log-likelihood: allowed loss of a step because of slope errors
   SearchPoint& at = state.at;
   std::deque<Secant> secants;
   for (int i = 0; i < kMostSteps; ++i) {
@@ -128,7 +128,7 @@ void climb(const Likelihood& likelihood, const SearchBox& box, double settled, S
 
 namespace {
 
-/// One-sided: what the second derivative adds is taken off. Second derivatives are found by the way.
+/// One-sided: the effect of the second derivative is subtracted. Second derivatives are computed too.
 Eigen::VectorXd slopes_with_curvature(const Likelihood& likelihood, SearchPoint& at) {
   constexpr double kShare = 0.03;  // of a sigma
   const Index n = at.theta.size();
@@ -145,9 +145,9 @@ Eigen::VectorXd slopes_with_curvature(const Likelihood& likelihood, SearchPoint&
   return slopes;
 }
 
-/// By both sides.
+/// By central differences.
 Eigen::VectorXd slopes_by_values(const Likelihood& likelihood, const SearchPoint& at) {
-  constexpr double kShare = 0.1;  // rounding of a value, 1e-5, and third derivatives, 0.1 a cubed sigma, are 2e-4 alike
+  constexpr double kShare = 0.1;  // rounding of a value, 1e-5, and third derivatives, 0.1 per cubed sigma, both give 2e-4
   const Index n = at.theta.size();
   const Eigen::VectorXd steps = kShare * sigmas_of_each(at.information);
   Eigen::VectorXd slopes(n);
@@ -165,8 +165,8 @@ void relinearise(const Likelihood& likelihood, bool curvature, SearchState& stat
   const Eigen::VectorXd slopes =
       (curvature ? slopes_with_curvature(likelihood, at) : slopes_by_values(likelihood, at)) - at.scores.gradient;
   Relinearised now{at.theta, slopes, Eigen::MatrixXd::Zero(slopes.size(), slopes.size())};
-  if (state.beyond_scores) {       // Broyden's rule, with sigmas for units
-    constexpr double kTold = 0.1;  // sigmas: over less the difference is rounding
+  if (state.beyond_scores) {       // Broyden's rule, with sigmas as units
+    constexpr double kTold = 0.1;  // sigmas: below it the difference is rounding
     const Relinearised& last = *state.beyond_scores;
     const Eigen::VectorXd moved = now.at - last.at;
     const Eigen::VectorXd weighted = at.information * moved;
@@ -180,7 +180,7 @@ void relinearise(const Likelihood& likelihood, bool curvature, SearchState& stat
 void polish(const Likelihood& likelihood, const SearchBox& box, SearchState& state) {
   constexpr int kMost = 5;
   constexpr double kSettled = 1e-7;  // of the log-likelihood: half a thousandth of a sigma
-  constexpr double kLast = 5e-5;     // a hundredth: what relinearising then leaves of it is a tenth
+  constexpr double kLast = 5e-5;     // a hundredth: after relinearisation a tenth of it remains
   for (int i = 0; i < kMost; ++i) {
     relinearise(likelihood, i == 0, state);
     const Eigen::VectorXd step =

@@ -22,7 +22,7 @@ std::string sensor_state_name(const StateLayout::SensorBlock& block, int index) 
   return block.size > 1 ? fmt::format("{} {}", name, index + 1) : name;
 }
 
-/// Rows of what is resolved in e, turned into n.
+/// Rows of the states resolved in e, rotated to n.
 Eigen::MatrixXd resolution_in_n(const StateLayout& layout, const Eigen::Vector3d& r_eb_e) {
   const Eigen::Matrix3d C_e_n = geo::C_n_e(geo::geodetic_from_ecef(r_eb_e)).transpose();
   Eigen::MatrixXd T = Eigen::MatrixXd::Identity(layout.size(), layout.size());
@@ -68,7 +68,7 @@ std::vector<std::string> state_names(const StateLayout& layout) {
       const auto at = names.begin() + block.offset + i;
       const auto earlier = std::ranges::count_if(names.begin(), at,
                                                  [&](const std::string& n) { return n == name || n.starts_with(name + " #"); });
-      *at = earlier > 0 ? fmt::format("{} #{}", name, earlier + 1) : name;  // a process that an axis has twice
+      *at = earlier > 0 ? fmt::format("{} #{}", name, earlier + 1) : name;  // a second process of the same kind on an axis
     }
   for (const StateLayout::Block& block : layout.auxiliaries()) names[static_cast<std::size_t>(block.offset)] = block.name;
   if (layout.lever_arm()) set(*layout.lever_arm(), "lever_arm", kBody);

@@ -10,14 +10,14 @@ namespace coast::estimate {
 
 /// A knot with its interval.
 struct RecordedKnot {
-  Knot knot;                              ///< without what only a continuation needs: covariance, remainder
+  Knot knot;                              ///< without data needed only for a continuation: covariance, remainder
   std::vector<Measurement> measurements;  ///< of its updates, in their order
   WhiteNoise white;                       ///< of the interval
-  Eigen::Matrix3Xd P_gnss;                ///< rows of P_post of the correlated GNSS error; empty where there is none
+  Eigen::Matrix3Xd P_gnss;                ///< rows of P_post of the correlated GNSS error; empty if there is none
   Eigen::Matrix3d C_n_e;
 };
 
-/// The room is kept for the next pass.
+/// Its memory is reused for the next pass.
 class PassRecord {
  public:
   /// @param filter  must outlive the record's use; its gate must be open, so that every measurement becomes an update

@@ -10,20 +10,20 @@ namespace coast::estimate {
 
 namespace {
 
-// What is not known of the motion while IMU samples are missing: errors of the bridged rate (ins/gap.hpp) and specific force
+// Uncertainty of the motion while IMU samples are missing: errors of the bridged rate (ins/gap.hpp) and specific force
 // that last for a manoeuvre.
 constexpr double kGapForceSd = 3.0;  // m/s^2
 constexpr double kManoeuvre = 0.5;   // s, correlation time
-// However long the gap, a land, sea or air vehicle comes out of it near level and at a speed of its kind. The heading may be
-// any; the filter is linear, and does not gain by more than this.
+// After a gap of any length, a land, sea or air vehicle is near level and has a speed typical of its kind. The heading may have
+// any value; the filter is linear, and larger values do not help it.
 constexpr double kGapTiltMax = 0.25;      // rad
 constexpr double kGapHeadingMax = 1.0;    // rad
 constexpr double kGapVelocityMax = 30.0;  // m/s
 constexpr double kCoastingGap = 5.0;      // s
 constexpr double kLostPosition = 100.0;   // m
 
-// Of the integral over t of an exponentially correlated error of unit variance, s^2: t^2 of a short one, 2 tau t of a long one,
-// however many intervals it is cut into.
+// Of the integral over t of an exponentially correlated error of unit variance, s^2: t^2 for short t, 2 tau t for long t,
+// independent of the division into intervals.
 double integrated_variance(double t) {
   const double periods = t / kManoeuvre;
   return 2.0 * kManoeuvre * kManoeuvre * (periods + std::expm1(-periods));
@@ -75,7 +75,7 @@ void Propagation::fold() {
   navigator_.advance_sensor_states();
 }
 
-// The level at the middle of a fold holds for all of it.
+// The level at the middle of a substep is used for all of it.
 void Propagation::follow_noise_level() {
   const std::vector<record::NoiseLevel>& levels = mission_.imu.noise;
   if (levels.empty()) return;
@@ -111,8 +111,8 @@ void Propagation::close(Eigen::MatrixXd& P) {
   if (const Restart* at = restart_at(mission_, navigator_.nav().t)) restart(*at, P);
 }
 
-// Fixes in the gap and behind it keep position and velocity, in which the filter is linear. Where there were none for long, the
-// start's are better, and a covariance of kilometres beside centimetres would cost the digits.
+// Fixes in and after the gap keep position and velocity, in which the filter is linear. If there were none for long, the
+// start's are better, and a covariance of kilometres next to centimetres would lose digits.
 void Propagation::restart(const Restart& at, Eigen::MatrixXd& P) {
   record::NavState nav = navigator_.nav();
   const Eigen::Matrix3d C_n_e = geo::C_n_e(geo::geodetic_from_ecef(at.nav.r_eb_e));

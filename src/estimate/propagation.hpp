@@ -9,29 +9,29 @@
 
 namespace coast::estimate {
 
-/// Instants closer than this are one: IMU and GNSS tags carry rounding of microseconds at best.
+/// Instants closer than this are considered equal: IMU and GNSS tags have rounding errors of microseconds at best.
 inline constexpr double kTimeTolerance = 2e-6;
 
-/// A gap over which rates and specific forces at its ends tell nothing of the motion in it.
+/// A gap too long for rates and specific forces at its ends to determine the motion in it.
 [[nodiscard]] bool is_long_gap(const record::ImuRecording& imu, double span);
 
-/// Where in the recording a walk through it stands.
+/// Position in the recording of a pass through it.
 struct SampleCursor {
   std::size_t next_sample = 0;
-  ins::RawIncrement remainder;  ///< of the next sample; dt = 0: it is untouched
+  ins::RawIncrement remainder;  ///< of the next sample; dt = 0: it was not started
 };
 
-/// A sample, or the part of one, on the way.
+/// A sample, or a part of one.
 struct SampleStep {
   ins::RawIncrement raw;
   geo::GpsTime at;             ///< its end
-  bool whole = true;           ///< it ends a sample
-  std::optional<double> span;  ///< s since the sample before, where it begins one
-  bool coasting = false;       ///< in place of samples that are missing for long
+  bool whole = true;           ///< ends at the end of a sample
+  std::optional<double> span;  ///< s since the sample before, if it begins a sample
+  bool coasting = false;       ///< replaces samples in a long gap
 };
 
-/// Goes through the samples up to `end`, or to where they end. `take` is called with each step, propagates the navigator and
-/// sets its time. Where samples are missing for long, a constant velocity and attitude take the place of what was recorded.
+/// Goes through the samples up to `end`, or to their end. `take` is called with each step, propagates the navigator and
+/// sets its time. In long gaps constant velocity and attitude are assumed.
 template <class Take>
 void walk(const record::ImuRecording& imu, SampleCursor& cursor, geo::GpsTime end, const Navigator& navigator,
           const Take& take) {
@@ -56,8 +56,8 @@ void walk(const record::ImuRecording& imu, SampleCursor& cursor, geo::GpsTime en
   }
 }
 
-/// The nominal trajectory and the transition of its errors side by side, with noise that changes over time and with what is not
-/// known of the motion while samples are missing.
+/// The nominal trajectory and the transition of its errors, with noise that varies over time and with the uncertainty of the
+/// motion while samples are missing.
 class Propagation {
  public:
   Propagation(const Mission& mission, const StateLayout& layout);
@@ -68,7 +68,7 @@ class Propagation {
   void close(Eigen::MatrixXd& P);
   /// Corrects the nominal trajectory, and begins an interval.
   void correct(const record::NavState& nav, const Eigen::VectorXd& x);
-  /// Of the interval at hand, or of the one that was closed, until the next begins.
+  /// For the current interval, or for the last closed one until the next begins.
   [[nodiscard]] const NavRows& Phi_n() const { return transition_.Phi_n(); }
   [[nodiscard]] WhiteNoise white_noise() const { return transition_.white_noise(); }
   [[nodiscard]] double elapsed() const { return transition_.elapsed(); }
@@ -84,24 +84,24 @@ class Propagation {
   const StateLayout& layout_;
   Navigator navigator_;
   TransitionAccumulator transition_;
-  std::size_t noise_level_ = 0;  ///< of the recording, the one at hand
-  double missing_share_ = 0.0;   ///< of the sample at hand
+  std::size_t noise_level_ = 0;  ///< index of the current one in the recording
+  double missing_share_ = 0.0;   ///< of the current sample
   double gap_ = 0.0;             ///< s of missing IMU in the interval
-  double gap_before_ = 0.0;      ///< s that the same gap has lasted before it
+  double gap_before_ = 0.0;      ///< s of the same gap before the interval
 };
 
 /// The restart at that instant, if there is one.
 [[nodiscard]] const Restart* restart_at(const Mission& mission, geo::GpsTime t);
 
-/// Of an interval between two samples, the share that was not measured; jitter of the tags is none.
+/// Fraction of an interval between two samples that was not measured; jitter of the tags is ignored.
 [[nodiscard]] double missing_share(const record::ImuRecording& imu, double span);
 
-/// What updates may look at where the navigator stands.
+/// Update context at the current state of the navigator.
 /// @param C_n_e  at the position
 [[nodiscard]] UpdateContext update_context(const Mission& mission, const StateLayout& layout, const SampleCursor& cursor,
                                            const Navigator& navigator, const Eigen::Matrix3d& C_n_e);
 
-/// Repeats the nominal trajectory from a knot to the next, at `end`: the states at IMU epochs on the way, and the one at `end`.
+/// Repeats the nominal trajectory from a knot to the next, at `end`: the states at IMU epochs between, and the one at `end`.
 [[nodiscard]] record::NavState repeat_nominal(const Mission& mission, const Knot& knot, geo::GpsTime end, Navigator& navigator,
                                               std::vector<record::NavState>& epochs);
 

@@ -63,8 +63,8 @@ namespace {
 
 using NavError = Eigen::Matrix<double, kNav, 1>;
 
-// Smoothed error of the nominal trajectory at a fraction of the interval. Position and velocity: d(dr)/dt = dv holds to the
-// Coriolis terms, so the cubic Hermite polynomial through (dr, dv) at both ends is the natural interpolant.
+// Smoothed error of the nominal trajectory at a fraction of the interval. Position and velocity: d(dr)/dt = dv holds except
+// for Coriolis terms, so the cubic Hermite polynomial through (dr, dv) at both ends is the natural interpolant.
 NavError interpolate(const NavError& d0, const NavError& d1, double fraction, double interval) {
   const double s = fraction;
   const double s2 = s * s;
@@ -94,8 +94,8 @@ record::NavState without_error(const record::NavState& nominal, const NavError& 
   return nav;
 }
 
-// Intervals are independent, so they are computed in chunks on all threads and delivered in order. Chunks are cut by count, not
-// by threads: the result has the same bytes for any number of them.
+// Intervals are independent, so they are computed in chunks on all threads and delivered in order. Chunk sizes do not depend on
+// the number of threads: neither do the bytes of the result.
 struct Chunk {
   std::size_t first = 0;
   std::vector<Knot> knots;

@@ -26,12 +26,12 @@ struct Session {
     common.print = 0;
     common.supernodal = CHOLMOD_SIMPLICIAL;
     common.final_asis = 0;  // else the next three would be ignored
-    common.final_ll = 1;    // of L D L' CHOLMOD does not notice a negative pivot
+    common.final_ll = 1;    // with L D L' CHOLMOD does not detect a negative pivot
     common.final_pack = 1;
     common.final_monotonic = 1;
-    common.grow0 = 0;  // what the analysis counted is enough
+    common.grow0 = 0;  // the memory counted by the analysis is sufficient
     common.grow2 = 0;
-    common.postorder = 0;  // it would take away the natural order's name, and with it cost a copy of the matrix
+    common.postorder = 0;  // it would replace the natural order, which costs a copy of the matrix
     common.method[0].ordering = CHOLMOD_NATURAL;
     common.method[1].ordering = CHOLMOD_AMD;
   }
@@ -39,7 +39,7 @@ struct Session {
   Session(const Session&) = delete;
   Session& operator=(const Session&) = delete;
 
-  // Positive status: a warning; that of a matrix that is not positive definite is dealt with where it can occur.
+  // Positive status: a warning; a matrix that is not positive definite is treated at the calls where it can occur.
   void require_success() const {
     if (common.status >= CHOLMOD_OK) return;
     if (common.status == CHOLMOD_OUT_OF_MEMORY) throw std::bad_alloc();
@@ -56,7 +56,7 @@ struct FreeFactor {
 };
 using Factor = std::unique_ptr<cholmod_factor, FreeFactor>;
 
-// CHOLMOD's view of it, read only: its structs know no const.
+// CHOLMOD's read-only view of it: its structs have no const.
 // The lower triangle by rows is the upper one by columns.
 cholmod_sparse view_of(const LowerTriangle& lower) {
   cholmod_sparse view{};
@@ -87,14 +87,14 @@ cholmod_dense view_of(const Eigen::VectorXd& b) {
 
 using Lower = Eigen::Map<const Eigen::SparseMatrix<double>>;
 
-// Packed, as the session demands. Rows ascend in every column: CHOLMOD computes L row by row.
+// Packed, as set in the session. Rows ascend in every column: CHOLMOD computes L row by row.
 Lower lower_of(const cholmod_factor& L) {
   const auto n = static_cast<Eigen::Index>(L.n);
   const auto* start = static_cast<const int*>(L.p);
   return {n, n, start[n], start, static_cast<const int*>(L.i), static_cast<const double*>(L.x)};
 }
 
-// Tells patterns apart without keeping one: it would be a third of the memory of the matrix.
+// Identifies a pattern without storing it: this would need a third of the memory of the matrix.
 struct Pattern {
   explicit Pattern(const LowerTriangle& lower)
       : size(lower.rows()),
@@ -115,11 +115,11 @@ struct Column {
   int size;
 };
 
-// Values of the column at the given rows, all of which are in it and the first of which is its own; `space` for as many.
+// Values of the column at the given rows, all of which are in it and the first of which is the diagonal; `space` for as many.
 const double* values_at(const int* rows, int count, const Column& column, double* space) {
-  if (column.size == count) return column.value;  // the same rows, as nearly always where columns are alike
+  if (column.size == count) return column.value;  // the same rows, as usual for columns of equal structure
   const int* end = column.row + column.size;
-  const bool few = column.size > 16 * count;  // then bisection: a short column would pay for the length of those to its right
+  const bool few = column.size > 16 * count;  // then bisection: otherwise the cost is the length of the longer column
   const int* at = column.row;
   for (int a = 0; a < count; ++a, ++at) {
     at = few ? std::lower_bound(at, end, rows[a]) : std::find(at, end, rows[a]);
@@ -128,7 +128,7 @@ const double* values_at(const int* rows, int count, const Column& column, double
   return space;
 }
 
-// Z is L at first, and from the last column to the first becomes the inverse of L L'.
+// Z is L at first, and from the last column to the first is replaced by the inverse of L L'.
 void invert_in_place(cholmod_factor& Z) {
   const auto n = static_cast<Eigen::Index>(Z.n);
   const int* start = static_cast<const int*>(Z.p);
@@ -207,13 +207,13 @@ void SparseCholesky::factorize(const LowerTriangle& lower) {
   if (!lower.isCompressed() || lower.rows() != lower.cols() || Pattern(lower) != cholmod_->pattern)
     throw std::invalid_argument("SparseCholesky::factorize: lower has another pattern than the one analysed");
   cholmod_common* common = &cholmod_->session->common;
-  cholmod_->factor.reset();  // before the next: two of them would be most of the memory
+  cholmod_->factor.reset();  // before the next one: two of them would need most of the memory
   Factor factor(cholmod_copy_factor(cholmod_->analysis.get(), common), {common});
   cholmod_->session->require_success();
   cholmod_sparse view = view_of(lower);
   cholmod_factorize(&view, factor.get(), common);
   cholmod_->session->require_success();
-  // From the one that failed on, CHOLMOD sets pivots to zero; those that are not finite it lets pass.
+  // CHOLMOD sets pivots from the failed one on to zero; it does not detect non-finite ones.
   const Lower L = lower_of(*factor);
   for (Eigen::Index j = 0; j < L.cols(); ++j) {
     const double pivot = L.valuePtr()[L.outerIndexPtr()[j]];
@@ -249,7 +249,7 @@ double SparseCholesky::log_determinant() const {
 
 namespace {
 
-// Largest eigenvalue of a symmetric positive definite operator, from below.
+// Largest eigenvalue of a symmetric positive definite operator, lower bound.
 template <class Apply>
 double largest_eigenvalue(Eigen::VectorXd v, int most, const Apply& apply) {
   constexpr double kAtRest = 0.01;

@@ -29,7 +29,7 @@ std::optional<int> signal_axis(noise::Input input, int axis) {
   return std::nullopt;
 }
 
-// How soon states decay or turn: 1/beta of a Gauss-Markov process, 1/omega of an oscillation; infinity for constants, walks and
+// Time constants of states: 1/beta of a Gauss-Markov process, 1/omega of an oscillation; infinity for constants, walks and
 // ramps, whose transitions have no eigenvalue but 1.
 double correlation_time(const noise::Process& process) {
   Eigen::MatrixXd Phi = Eigen::MatrixXd::Zero(process.states(), process.states());

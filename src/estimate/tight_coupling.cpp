@@ -13,11 +13,11 @@ namespace {
 using carrier::Unknown;
 
 constexpr Unknown kFree{};
-constexpr Eigen::Index kMoving = 6;  // position and velocity: what a RelativeState begins with
+constexpr Eigen::Index kMoving = 6;  // position and velocity: the first states of a RelativeState
 
 /// Rows of unit variance, three at a time. @return log-likelihood of the innovations
 double apply_rows(const Eigen::MatrixXd& H, const Eigen::VectorXd& nu, FilterState& state, Knot& knot) {
-  Eigen::VectorXd step = Eigen::VectorXd::Zero(state.P.rows());  // truth-ward, so far
+  Eigen::VectorXd step = Eigen::VectorXd::Zero(state.P.rows());  // towards the truth, so far
   double log_likelihood = 0.0;
   for (Eigen::Index row = 0; row < nu.size(); row += kMaxComponents) {
     const Eigen::Index m = std::min<Eigen::Index>(kMaxComponents, nu.size() - row);
@@ -52,11 +52,11 @@ void TightCoupling::begin(FilterState& state) {
 
 Eigen::Index TightCoupling::slot_of(const Unknown& unknown) const {
   const auto found = std::ranges::find(slots_, unknown);
-  if (found == slots_.end()) throw std::logic_error("no carrier slot is left");  // they have been counted beforehand
+  if (found == slots_.end()) throw std::logic_error("no carrier slot is left");  // their number was checked before
   return layout_.carrier_slots() + (found - slots_.begin());
 }
 
-/// Rows over a RelativeState's unknowns become rows over the filter's states.
+/// Converts rows over a RelativeState's unknowns to rows over the filter's states.
 Eigen::MatrixXd TightCoupling::over_states(const Eigen::MatrixXd& H, const std::vector<Unknown>& unknowns,
                                            const UpdateContext& context, const FilterState& state) const {
   Eigen::MatrixXd over = H.leftCols<3>() * antenna_position(state, context).H +

@@ -6,16 +6,16 @@
 
 namespace coast::estimate {
 
-/// Gives the unknowns of the observations a slot each among the filter's states while they last. What carrier::Coupling makes
-/// of an epoch becomes updates of three rows at a time; their noise is uncorrelated, so the order does not matter.
+/// Assigns each unknown of the observations a slot among the filter's states while it exists. The output of carrier::Coupling
+/// for an epoch is applied as updates of three rows at a time; their noise is uncorrelated, so the order does not matter.
 class TightCoupling {
  public:
-  /// @param layout  with slots
+  /// @param layout  including slots
   TightCoupling(const CarrierObservations& observations, const StateLayout& layout, bool time_reversed);
 
-  /// Forgets whatever stands in the slots.
+  /// Clears all slots.
   void begin(FilterState& state);
-  /// Goes on from a knot.
+  /// Continues from a knot.
   void begin(const Knot& knot) { slots_ = knot.slots; }
 
   struct Outcome {
@@ -36,8 +36,8 @@ class TightCoupling {
 
   const StateLayout& layout_;
   carrier::Coupling coupling_;
-  double direction_;                     ///< of time: -1 where velocities are those of a recording run backwards
-  std::vector<carrier::Unknown> slots_;  ///< a position stands for a free one
+  double direction_;                     ///< of time: -1 for velocities of a time-reversed recording
+  std::vector<carrier::Unknown> slots_;  ///< kPosition marks a free one
 };
 
 }  // namespace coast::estimate

@@ -6,7 +6,7 @@ namespace coast::estimate {
 
 namespace {
 
-// The response of navigation row i to a constant sensor error grows like elapsed^power.
+// The response of navigation row i to a constant sensor error grows as elapsed^power.
 int response_power(noise::Sensor sensor, int row) {
   const int gyro = row < kVel ? 3 : (row < kPsi ? 2 : 1);
   return sensor == noise::Sensor::kGyro ? gyro : std::max(gyro - 1, 0);
@@ -125,7 +125,7 @@ void TransitionAccumulator::propagate_covariance(Eigen::MatrixXd& P) {
   over_interval_.over(elapsed_);
   NavRows T(kNav, P.cols());
   T.topRows<kPsi>().noalias() = Phi_n_.topRows<kPsi>() * P.topRows(Phi_n_.cols());
-  // Nothing but attitude and gyro states acts on the attitude.
+  // The attitude depends only on attitude and gyro states.
   T.bottomRows<3>().noalias() = Phi_n_.block<3, 3>(kPsi, kPsi) * P.middleRows<3>(kPsi);
   T.bottomRows<3>().noalias() += Phi_n_.block(kPsi, kNav, 3, gyro_states_) * P.middleRows(kNav, gyro_states_);
   P.topLeftCorner<kNav, kNav>().noalias() = T.leftCols(Phi_n_.cols()) * Phi_n_.transpose();
@@ -137,7 +137,7 @@ void TransitionAccumulator::propagate_covariance(Eigen::MatrixXd& P) {
   add_driven_covariance(P);
 }
 
-// Driving noise of sensor states that is uniform over the interval, seen by responses that grow like powers of time:
+// Driving noise of sensor states that is uniform over the interval, with responses that grow as powers of time:
 // integrals of (t/T)^p and (t/T)^(p+q) over the interval.
 void TransitionAccumulator::add_driven_covariance(Eigen::MatrixXd& P) const {
   const auto shares = [](noise::Sensor sensor) {

@@ -48,7 +48,7 @@ Innovation innovation(const FilterState& state, const Linearised& measurement) {
 
 namespace {
 
-// Joseph's (I - K H) P (I - K H)' + K R K' with S = H P H' + R, expanded and gathered:
+// Joseph's (I - K H) P (I - K H)' + K R K' with S = H P H' + R, expanded and rearranged:
 //     P - K (P H')' - (P H' - K S) K'
 // The last bracket is rounding only, and the reason why this form keeps P positive. Lower triangle, then mirrored.
 template <int M>

@@ -30,7 +30,7 @@ Radii radii_of_curvature(double latitude) {
 }
 
 Eigen::Vector3d ecef_from_geodetic(const Geodetic& p) {
-  // In radians throughout: GeographicLib's forward would need degrees, and costs two roundings of the angle.
+  // In radians throughout: GeographicLib's forward needs degrees, with two roundings of the angle.
   const double N = radii_of_curvature(p.latitude).prime_vertical;
   const double c = std::cos(p.latitude);
   return {(N + p.height) * c * std::cos(p.longitude), (N + p.height) * c * std::sin(p.longitude),

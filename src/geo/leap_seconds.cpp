@@ -32,7 +32,7 @@ GpsTime from_ntp(std::int64_t seconds) {
   return GpsTime::from_nanoseconds((seconds - kGpsEpochNtp) * kNanosecondsPerSecond);
 }
 
-// A list that contradicts history is not trusted with the future.
+// A list that contradicts past leap seconds is not used for future ones.
 bool extends(const LeapSecondTable& longer, const LeapSecondTable& base) {
   return longer.expiry > base.expiry && longer.entries.size() >= base.entries.size() &&
          std::equal(base.entries.begin(), base.entries.end(), longer.entries.begin(), [](const auto& a, const auto& b) {
@@ -57,7 +57,7 @@ const LeapSecondTable& built_in_leap_seconds() {
 }
 
 std::optional<LeapSecondTable> parse_leap_seconds_list(std::istream& in) {
-  constexpr std::int64_t kPlausibleNtp = 10'000'000'000;  // year 2216: beyond it the text is something else
+  constexpr std::int64_t kPlausibleNtp = 10'000'000'000;  // year 2216: a later one means another kind of text
   LeapSecondTable table;
   bool has_expiry = false;
   for (std::string line; std::getline(in, line);) {

@@ -26,13 +26,13 @@ using Parameters = std::array<double, 7>;
 
 struct Frame {
   std::string_view name;
-  std::string_view parent;  // the parameters lead from it to this frame; empty at the root
+  std::string_view parent;  // the parameters transform from it to this frame; empty at the root
   double epoch;             // decimal year at which `value` holds
   Parameters value;
   Parameters rate;
 };
 
-// Each row as its authority prints it, so that it can be held against the paper:
+// Each row as printed by its authority, for comparison with the paper:
 // - ITRFyy: "Transformation parameters from ITRF2020 to past ITRFs" (itrf.ign.fr, Transfo-ITRF2020_TRFs.txt), epoch 2015.0.
 // - ETRF2020, ETRF2014: the definition, a rotation with Eurasia since 1989.0; ETRF2000: EUREF TN 1, from ITRF2014 (EPSG 10572,
 //   8366, 8405). TN 1 writes R as here.
@@ -177,11 +177,11 @@ Similarity at(const Frame& f, double year) {
   return si(p);
 }
 
-// The two walks carry the shift from r, of metres, and not the position: a position is rounded to 1e-9 m at every addition.
+// Both transformations accumulate the shift from r, of metres, and not the position, which is rounded to 1e-9 m per addition.
 Eigen::Vector3d shift_to_root(const Frame& f, double year, const Eigen::Vector3d& r, Eigen::Vector3d shift) {
   if (f.parent.empty()) return shift;
   const Similarity s = at(f, year);
-  // r_parent + s.of(r_parent) = r, by fixed point: each turn gains the factor |D| + |R| < 1e-6, so three are below 1e-15 m.
+  // r_parent + s.of(r_parent) = r, by fixed point: each iteration gains a factor |D| + |R| < 1e-6, so three are below 1e-15 m.
   Eigen::Vector3d parent_shift = shift;
   for (int i = 0; i < 3; ++i) parent_shift = shift - s.of(r + parent_shift);
   return shift_to_root(known_frame(f.parent), year, r, parent_shift);
@@ -193,7 +193,7 @@ Eigen::Vector3d shift_from_root(const Frame& f, double year, const Eigen::Vector
   return parent_shift + at(f, year).of(r + parent_shift);
 }
 
-// Velocity of the ITRF2020 in f: the sum of the rates along the way.
+// Velocity of the ITRF2020 in f: the sum of the rates along the path.
 Eigen::Vector3d drift_from_root(const Frame& f, const Eigen::Vector3d& r) {
   if (f.parent.empty()) return Eigen::Vector3d::Zero();
   return drift_from_root(known_frame(f.parent), r) + si(f.rate).of(r);
@@ -227,7 +227,7 @@ Eigen::Vector3d transform(const Eigen::Vector3d& r, const FrameEpoch& from, cons
   const Frame& source = known_frame(from.frame);
   const Frame& target = known_frame(to.frame);
   const Eigen::Vector3d moved = velocity_mpy * (to.year - from.year);
-  // Over the root and back would be the identity only to rounding.
+  // By the root and back would be the identity only to rounding.
   if (&source == &target) return r + moved;
   return r + shift_from_root(target, to.year, r, shift_to_root(source, to.year, r, moved));
 }

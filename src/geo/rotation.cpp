@@ -53,7 +53,7 @@ Eigen::Quaterniond quaternion_from_rotation_vector(const Eigen::Vector3d& v) {
 }
 
 Eigen::Vector3d rotation_vector(const Eigen::Quaterniond& q) {
-  const double sign = q.w() < 0.0 ? -1.0 : 1.0;  // q and -q are one rotation; this one is the shorter way
+  const double sign = q.w() < 0.0 ? -1.0 : 1.0;  // q and -q are one rotation; this one has the smaller angle
   const double n = q.vec().norm();
   if (n < 1e-150) return 2.0 * sign * q.vec();  // n^2 underflows; the angle is 2 n to full precision
   return sign * (2.0 * std::atan2(n, sign * q.w()) / n) * q.vec();
@@ -101,7 +101,7 @@ Euler euler_from_dcm(const Eigen::Matrix3d& C_b_n) {
   const double cos_pitch = std::hypot(C(2, 1), C(2, 2));
   e.pitch = std::atan2(-C(2, 0), cos_pitch);
   e.roll = cos_pitch < kGimbal ? 0.0 : wrap_angle(std::atan2(C(2, 1), C(2, 2)));
-  // Yaw from C Rx(-roll) = Rz Ry: near the pole it takes up what roll lost, so the product stays the given rotation.
+  // Yaw from C Rx(-roll) = Rz Ry: near the pole it includes the error of roll, so the product remains the given rotation.
   const double sr = std::sin(e.roll), cr = std::cos(e.roll);
   e.yaw = wrap_angle(std::atan2(C(0, 2) * sr - C(0, 1) * cr, C(1, 1) * cr - C(1, 2) * sr));
   return e;

@@ -134,7 +134,7 @@ Calendar GpsTime::calendar() const {
 Calendar GpsTime::utc() const {
   const int offset = leap_seconds(*this);
   const std::int64_t label = ns_ - offset * kSecond;
-  // With the old offset still in force the label has reached the new day: this is second 60 of the day before.
+  // With the old offset still valid the label has reached the new day: this is second 60 of the day before.
   if (offset_at_utc(label) > offset) {
     Calendar c = calendar_of(label - kSecond);
     c.second += 1.0;

@@ -19,20 +19,20 @@
 namespace coast::ins {
 namespace {
 
-constexpr double kShortGap = 0.1;                                // s: samples missing for less turn a body by little
+constexpr double kShortGap = 0.1;                                // s: in shorter gaps a body rotates little
 constexpr double kGoodHeading = 1.0 * geo::kDegree;              // the search for a better window ends
-constexpr double kFairHeading = 5.0 * geo::kDegree;              // taken where `kPatience` brought none better
+constexpr double kFairHeading = 5.0 * geo::kDegree;              // accepted if `kPatience` gave none better
 constexpr double kPatience = 60.0;                               // s
-constexpr double kGyrocompass = 2.0 * geo::kDegree;              // better than this and no motion is asked
+constexpr double kGyrocompass = 2.0 * geo::kDegree;              // if better than this, no motion is required
 constexpr double kUsableHeading = 15.0 * geo::kDegree;           // a filter linear in the attitude converges from here
 constexpr double kClearLead = 6.0;                               // -2 log likelihood: another heading is 20 times less likely
 constexpr double kSearch = 600.0, kSearchStep = 20.0;            // s
 constexpr double kShortestWindow = 10.0, kLongestWindow = 80.0;  // s
-constexpr double kIntervals = 12.0;                              // of fixes, at least, in the longest window
-constexpr double kStandstillVelocitySd = 0.02;                   // m/s; an engine shakes, a rotor lifts
+constexpr double kIntervals = 12.0;                              // number of fix intervals in the longest window, at least
+constexpr double kStandstillVelocitySd = 0.02;                   // m/s; engines vibrate, rotors lift
 constexpr double kForceError = 0.02;                             // m/s^2, of attitude and accelerometer bias together
-constexpr double kMinForceBias = 1e-3;  // m/s^2; no accelerometer is better, nor is gravity known better
-constexpr double kLeastBiasSd = 1e-5;   // rad/s; what stands on wheels or legs may still turn by as much
+constexpr double kMinForceBias = 1e-3;  // m/s^2; smaller than the error of any accelerometer, and of gravity
+constexpr double kLeastBiasSd = 1e-5;   // rad/s; a vehicle at rest on wheels or legs may still rotate by this
 
 const char* const kGiveStart =
     "Give the state under `start:` (time_s, position_deg_m, velocity_mps, attitude_deg, sd), or start the recording earlier or "
@@ -102,7 +102,7 @@ Eigen::Matrix3d levelled(const Eigen::Vector3d& f_b) {
   return geo::dcm_from_euler({std::atan2(-f_b.y(), -f_b.z()), std::atan2(f_b.x(), std::hypot(f_b.y(), f_b.z())), 0.0});
 }
 
-// The yaw that brings a levelled attitude nearest to another: no Euler angles of the body, so any mounting will do.
+// The yaw that brings a levelled attitude closest to another: without Euler angles of the body, for any mounting.
 double yaw_towards(const Eigen::Matrix3d& C_level, const Eigen::Matrix3d& C_b_n) {
   const Eigen::Matrix3d M = C_level * C_b_n.transpose();
   return std::atan2(M(0, 1) - M(1, 0), M(0, 0) + M(1, 1));
@@ -116,7 +116,7 @@ double accel_bias_sd(const AlignmentInput& input) {
   return std::max(input.accel_bias_sd, kMinForceBias);
 }
 
-// Attitude against e carried by the gyro from the start of sample `from` back to the start of sample `to` <= from.
+// Attitude relative to e, propagated by the gyro from the start of sample `from` back to the start of sample `to` <= from.
 Eigen::Matrix3d carried_back(const AlignmentInput& input, const Eigen::Matrix3d& C_b_e, std::size_t from, std::size_t to,
                              const Eigen::Vector3d& gyro_bias) {
   Eigen::Quaterniond turn = Eigen::Quaterniond::Identity();  // b at `from` to b at `to`
@@ -133,10 +133,10 @@ Eigen::Matrix3d carried_back(const AlignmentInput& input, const Eigen::Matrix3d&
          turn.conjugate().toRotationMatrix();
 }
 
-// A heading found in motion, with all that comes along.
+// A heading found from motion, with all related results.
 struct Heading {
   std::size_t first = 0;  // of the window
-  Eigen::Matrix3d C_b_n;  // carried to where it was asked for
+  Eigen::Matrix3d C_b_n;  // propagated to the requested instant
   Eigen::Vector3d sd_n;   // rad, about N, E, D
   Eigen::Vector3d gyro_bias;
   Eigen::Vector3d accel_bias;
@@ -150,7 +150,7 @@ std::size_t sample_after(const record::ImuRecording& imu, geo::GpsTime t) {
   return static_cast<std::size_t>(at - imu.samples.begin());
 }
 
-// Seconds that nothing measured in samples [first, end).
+// Time without measurements in samples [first, end), s.
 double missing_seconds(const record::ImuRecording& imu, std::size_t first, std::size_t end) {
   double missing = 0.0;
   for (std::size_t i = first; i < end; ++i)
@@ -158,7 +158,7 @@ double missing_seconds(const record::ImuRecording& imu, std::size_t first, std::
   return missing;
 }
 
-// Heading at the start of sample `at` from the first stretch of motion behind it that shows it well, or the best there is.
+// Heading at the start of sample `at` from the first sufficient stretch of motion after it, or from the best one.
 std::optional<Heading> heading_from_motion(const AlignmentInput& input, const Span& span, std::size_t at,
                                            const Eigen::Vector3d& gyro_bias, double gyro_bias_sd, bool vehicle_forward) {
   const auto& samples = input.imu.samples;
@@ -167,7 +167,7 @@ std::optional<Heading> heading_from_motion(const AlignmentInput& input, const Sp
   const double longest = std::max(kLongestWindow, kIntervals * typical_interval(input.gnss));
   std::optional<Heading> best;
   for (double from = 0.0; from < kSearch && t_at + from < span.end; from += kSearchStep) {
-    Eigen::Vector3d nearby = gyro_bias;  // a short window survives a poor bias; what it finds carries the longer ones
+    Eigen::Vector3d nearby = gyro_bias;  // a short window tolerates a poor bias; its estimate is the start for longer ones
     for (double length = kShortestWindow; length <= longest; length *= 2.0) {
       const std::size_t first = sample_after(input.imu, t_at + from + 1e-6);
       const std::size_t end = sample_after(input.imu, std::min(span.end, t_at + from + length));
@@ -211,8 +211,8 @@ void require_usable(const std::optional<Heading>& heading, const Span& span, boo
                   std::min(kSearch, span.end - span.t), kUsableHeading / geo::kDegree, found, hint, kGiveStart));
 }
 
-// Where it stands: the mean of the fixes while it does, whose errors are alike. Without one it is where the first fix behind
-// is, but for what it has moved by then, at the speed of the fixes that follow.
+// Position at standstill: the mean of the fixes during it, whose errors are correlated. Without fixes, that of the first fix
+// after it, with an uncertainty for the displacement until then, at the speed of the following fixes.
 TrackPoint standing_antenna(const AlignmentInput& input, const Span& span, const StaticPeriod& period) {
   constexpr double kLeastSpeed = 2.0;  // m/s
   TrackPoint antenna{Eigen::Vector3d::Zero(), Eigen::Vector3d::Zero(), 0.0, kStandstillVelocitySd};
@@ -257,7 +257,7 @@ InitialState from_standstill(const AlignmentInput& input, const Span& span, cons
     yaw_sd = std::hypot(compass_sd, tilt_sd * std::tan(p.latitude));
     heading_text = "heading by gyrocompassing";
   } else {
-    // Earth's rate is part of what stands still, less its horizontal share, whose direction in the body is not known yet.
+    // Earth's rate is part of the mean at rest; its horizontal part, of unknown direction in the body, is not subtracted yet.
     const Eigen::Vector3d bias = means.rate - C_level.transpose() * Eigen::Vector3d(0.0, 0.0, omega_ie_n.z());
     const double bias_sd = std::hypot(rate_sd, horizontal) + kLeastBiasSd;
     const auto heading = heading_from_motion(input, span, period.last, bias, bias_sd, vehicle_forward);

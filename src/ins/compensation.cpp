@@ -15,7 +15,7 @@ namespace {
 
 constexpr int kWindow = static_cast<int>(kCompensationWindow);
 constexpr int kNodes = 7;             // Chebyshev points per interval: polynomials of degree 6 on 1/11 of the window
-constexpr int kMaxIterations = 12;    // each gains a factor |dtheta|/2 or better
+constexpr int kMaxIterations = 12;    // each reduces the error by a factor |dtheta|/2 or better
 constexpr double kConverged = 1e-14;  // rad
 
 using Increments = Eigen::Matrix<double, 6, kWindow>;  // columns (dtheta, dv)
@@ -23,11 +23,11 @@ using Nodes3 = Eigen::Matrix<double, 3, kNodes>;
 using Nodes6 = Eigen::Matrix<double, 6, kNodes>;
 using Fit = Eigen::Matrix<double, kWindow, kNodes>;
 
-// Everything that depends on the geometry alone. Time s runs over [0, 1] in the interval asked for.
+// All quantities that depend only on the geometry. Time s is in [0, 1] in the requested interval.
 struct Tables {
   std::array<Fit, kWindow> rate;                   // by position: increments to rates (times dt) at the nodes
   std::array<Fit, kWindow> angle;                  // increments to integrals from s = 0 to the nodes
-  Eigen::Matrix<double, kNodes, kNodes> integral;  // values at nodes to integrals from 0 to node: column = node reached
+  Eigen::Matrix<double, kNodes, kNodes> integral;  // values at nodes to integrals from 0 to a node: column = end node
   Eigen::Matrix<double, kNodes, 1> weights;        // to the integral over [0, 1]
 };
 
@@ -50,7 +50,7 @@ Lagrange lagrange(int k, double t) {
   return l;
 }
 
-// The integral up to the end of interval k is the sum of increments 0..k: increment j acts through all ends behind it.
+// The integral up to the end of interval k is the sum of increments 0..k: increment j affects all later ends.
 void fill_fit(Tables& tables, int position) {
   for (int i = 0; i < kNodes; ++i) {
     double rate = 0.0;
@@ -74,7 +74,7 @@ double chebyshev_integral(int k, double x) {
   return 0.5 * T(k + 1) / (k + 1) - 0.5 * T(k - 1) / (k - 1) - at_start;
 }
 
-// Values at the Chebyshev points determine the coefficients (discrete orthogonality), those the integral; ds = dx / 2.
+// Values at the Chebyshev points determine the coefficients (discrete orthogonality), and these the integral; ds = dx / 2.
 double integral_of_cardinal(int j, double s) {
   double sum = 0.0;
   for (int k = 0; k < kNodes; ++k) {
@@ -99,12 +99,12 @@ const Tables& tables() {
   return instance;
 }
 
-// What turns the derivative of the Rodrigues vector away from the rate.
+// Difference between the derivative of the Rodrigues vector and the rate.
 Eigen::Vector3d rodrigues_excess(const Eigen::Vector3d& g, const Eigen::Vector3d& omega) {
   return 0.5 * g.cross(omega) + (0.25 * g.dot(omega)) * g;
 }
 
-// 2 atan(a/2)/a by series for small angles, where it is most wanted.
+// 2 atan(a/2)/a by series for small angles, the usual case.
 Eigen::Vector3d rotation_vector_from_rodrigues(const Eigen::Vector3d& g) {
   const double x = 0.25 * g.squaredNorm();
   if (x < 1e-3) return g * (1.0 - x * (1.0 / 3.0 - x * (1.0 / 5.0 - x * (1.0 / 7.0 - x * (1.0 / 9.0 - x / 11.0)))));
@@ -151,7 +151,7 @@ void store(const BodyIncrement& increment, record::ImuSample& sample) {
   sample.dv = increment.u;
 }
 
-// Tags jitter by their rounding; a tenth of an interval is no missing time.
+// Tags have rounding errors; a tenth of an interval is no missing time.
 bool adjoins(const record::ImuSample& previous, const record::ImuSample& next) {
   return std::abs((next.t - previous.t) - next.dt) < 0.1 * next.dt;
 }
@@ -165,12 +165,12 @@ std::size_t end_of_run(const std::vector<record::ImuSample>& samples, std::size_
   return end;
 }
 
-// [first, last) holds at least a window.
+// [first, last) contains at least one window.
 void compensate_run(std::span<record::ImuSample> run) {
   Increments window;
   for (std::size_t j = 0; j < kCompensationWindow; ++j)
     window.col(static_cast<Eigen::Index>(j)) = column(run[j].dtheta, run[j].dv);
-  std::size_t start = 0;  // of the window in the run; what it holds is raw even where the run is compensated already
+  std::size_t start = 0;  // of the window in the run; its content is raw even if the run is compensated already
   for (std::size_t i = 0; i < run.size(); ++i) {
     if (i - start > kCompensationWindow / 2 && start + kCompensationWindow < run.size()) {
       const record::ImuSample& next = run[start + kCompensationWindow];
@@ -198,7 +198,7 @@ BodyIncrement compensate_chebyshev(std::span<const RawIncrement> window, std::si
 
 void compensate_chebyshev(record::ImuRecording& body) {
   std::vector<record::ImuSample>& samples = body.samples;
-  RawIncrement previous;  // raw, of the sample before the one at hand; dt = 0 where there is none or time is missing
+  RawIncrement previous;  // raw, of the sample before the current one; dt = 0 if there is none or time is missing
   for (std::size_t first = 0; first < samples.size();) {
     const std::size_t end = end_of_run(samples, first);
     const RawIncrement last = raw(samples[end - 1]);

@@ -18,17 +18,17 @@
 namespace coast::ins {
 namespace {
 
-constexpr double kSideslip = 4.0 * geo::kDegree;  // course against body axis: mounting and drift, one value for a whole window
+constexpr double kSideslip = 4.0 * geo::kDegree;       // course relative to body axis: mounting and drift, constant in a window
 constexpr double kSlowest = 0.3, kCourseSigmas = 5.0;  // m/s
 constexpr double kOverlap = 1.5;                       // neighbouring hats share a quarter of their noise
-constexpr double kRateSpan = 0.02;                     // s to both sides, for the antenna's velocity against the IMU
+constexpr double kRateSpan = 0.02;                     // s to both sides, for the antenna's velocity relative to the IMU
 constexpr int kGaussNewtonSteps = 60;
-constexpr double kLinear = 0.1;  // rad that a bias turns the attitude by over a window: its effect is linear up to there
+constexpr double kLinear = 0.1;  // rad of attitude change by a bias over a window up to which its effect is linear
 
 using Matrix9 = Eigen::Matrix<double, 9, 9>;  // psi_e, gyro bias, accelerometer bias
 using Vector9 = Eigen::Matrix<double, 9, 1>;
 
-// What the IMU says to an observation, for one value of the gyro bias: F - B b_a, with its derivative by the gyro bias.
+// Prediction of an observation from the IMU, for one value of the gyro bias: F - B b_a, with its derivative by the gyro bias.
 struct Prediction {
   Eigen::Vector3d force = Eigen::Vector3d::Zero();  // mean of C_b(t)_b(0) f, antenna's, m/s^2
   Eigen::Matrix3d by_gyro_bias = Eigen::Matrix3d::Zero();
@@ -36,14 +36,14 @@ struct Prediction {
   Eigen::Matrix3d C_k = Eigen::Matrix3d::Identity();        // C_b(t_k)_b(0)
 };
 
-// Weight of a sample over (t - dt/2, t + dt/2]; a box takes its share of the samples at its ends.
+// Weight of a sample over (t - dt/2, t + dt/2]; a box weights the samples at its ends by overlap.
 double weight(const ForceObservation& o, double t, double dt) {
   if (!o.hat) return std::clamp((std::min(o.t_b, t + 0.5 * dt) - std::max(o.t_a, t - 0.5 * dt)) / dt, 0.0, 1.0);
   if (t <= o.t_a || t >= o.t_b) return 0.0;
   return t < o.t_k ? (t - o.t_a) / (o.t_k - o.t_a) : (o.t_b - t) / (o.t_b - o.t_k);
 }
 
-// Where the antenna stands against the IMU in the axes of b(0), with the derivative by the gyro bias, at the edges of the
+// Position of the antenna relative to the IMU in the axes of b(0), with the derivative by the gyro bias, at the edges of the
 // samples.
 using Lever = Eigen::Matrix<double, 3, 4>;  // l, dl/db_g
 struct LeverPath {
@@ -60,7 +60,7 @@ struct LeverPath {
     const double from = std::max(time - kRateSpan, t.front()), to = std::min(time + kRateSpan, t.back());
     return (at(to) - at(from)) / (to - from);
   }
-  // The antenna's mean acceleration against the IMU: the derivatives of the weights act on the lever arm.
+  // The antenna's mean acceleration relative to the IMU: the derivatives of the weights act on the lever arm.
   [[nodiscard]] Lever acceleration(const ForceObservation& o) const {
     if (!o.hat) return (velocity(o.t_b) - velocity(o.t_a)) / (o.t_b - o.t_a);
     const Lever after = (at(o.t_b) - at(o.t_k)) / (o.t_b - o.t_k);
@@ -84,7 +84,7 @@ class Window {
     path.t.push_back(0.0);
     path.l.push_back((Lever() << input_.lever_arm_b, Eigen::Matrix3d::Zero()).finished());
     Eigen::Quaterniond q = Eigen::Quaterniond::Identity();
-    Eigen::Matrix3d turned = Eigen::Matrix3d::Zero();  // integral of C_b(t)_b(0): how the attitude answers to a bias
+    Eigen::Matrix3d turned = Eigen::Matrix3d::Zero();  // integral of C_b(t)_b(0): response of the attitude to a bias
     RawIncrement previous;
     std::size_t oldest = 0;
     for (std::size_t i = input_.first; i <= input_.last; ++i) {
@@ -125,7 +125,7 @@ class Window {
   std::vector<ForceObservation> observations_;
 };
 
-// Rotation that takes the IMU's forces to GNSS's, closed form (Wahba 1965; Markley 1988).
+// Rotation of the IMU's forces to those of GNSS, closed form (Wahba 1965; Markley 1988).
 Eigen::Matrix3d wahba(const std::vector<ForceObservation>& observations, const std::vector<Prediction>& predictions) {
   Eigen::Matrix3d B = Eigen::Matrix3d::Zero();
   for (std::size_t j = 0; j < observations.size(); ++j) B += observations[j].force_i * predictions[j].force.transpose();
@@ -139,7 +139,7 @@ struct Estimate {
   Eigen::Vector3d gyro_bias = Eigen::Vector3d::Zero();
   Eigen::Vector3d accel_bias = Eigen::Vector3d::Zero();
   Matrix9 covariance = Matrix9::Zero();
-  double variance = 0.0;  // of an observation beyond what GNSS explains
+  double variance = 0.0;  // of an observation in excess of that of GNSS
   double cost = 0.0;      // -2 log likelihood
 };
 
@@ -150,7 +150,7 @@ struct Normal {
   double cost = 0.0;
 };
 
-// Across the course the body's velocity is nothing but sideslip: one unknown angle for the window, plus noise of the course.
+// The body's velocity across the course is only sideslip: one unknown angle for the window, plus noise of the course.
 void add_course(const std::vector<ForceObservation>& observations, const std::vector<Prediction>& predictions,
                 const Estimate& x, Normal& normal) {
   std::vector<std::size_t> moving;
@@ -173,7 +173,7 @@ void add_course(const std::vector<ForceObservation>& observations, const std::ve
     normal.cost += information * v_b.y() * v_b.y();
     ahead += v_b.x() / count;
   }
-  // Sideslip is blind to driving backwards: forward is preferred by 3 sigma, which the forces may outweigh.
+  // Sideslip does not detect driving backwards: forward is preferred by 3 sigma, which the forces may outweigh.
   if (ahead < 0.0) normal.cost += 9.0;
 }
 
@@ -205,19 +205,19 @@ Normal linearise(const MatchInput& input, const std::vector<ForceObservation>& o
   };
   prior(3, x.gyro_bias - input.gyro_bias, input.gyro_bias_sd);
   prior(6, x.accel_bias, input.accel_bias_sd);
-  normal.N.diagonal().head<3>().array() += 1e-2;  // 10 rad: keeps an unobservable heading finite, says nothing
+  normal.N.diagonal().head<3>().array() += 1e-2;  // 10 rad: keeps an unobservable heading finite, without other effect
   return normal;
 }
 
-// What is predicted for a bias nearby.
+// The predictions for a nearby bias.
 std::vector<Prediction> moved(std::vector<Prediction> predictions, const Eigen::Vector3d& by) {
   for (Prediction& one : predictions) one.force += one.by_gyro_bias * by;
   return predictions;
 }
 
-// Gauss-Newton, with a bound on the step: a heading far off must turn, not tumble. The samples are gone through anew where the
-// bias has moved too far for its linear effect, and where the iteration rests, until it rests on a bias that they were gone
-// through with.
+// Gauss-Newton, with a bound on the step: a distant heading must rotate without overshooting. Samples are processed again if
+// the bias has moved beyond the range of its linear effect, and at convergence, until it has converged at a bias for which they
+// were processed.
 Estimate refine(const MatchInput& input, const Window& window, Estimate x) {
   constexpr double kRests = 1e-6;  // rad
   const double seconds = window.observations().back().t_b;

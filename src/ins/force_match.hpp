@@ -1,5 +1,5 @@
 #pragma once
-// Attitude from motion: the specific force that the IMU felt, carried along by the gyro, against the one that GNSS saw.
+// Attitude from motion: the specific force of the IMU, rotated by the gyro, compared with that from GNSS.
 
 #include <Eigen/Core>
 #include <optional>
@@ -9,7 +9,7 @@
 
 namespace coast::ins {
 
-/// Samples first..last (inclusive) and what is known of the sensor.
+/// Samples first..last (inclusive) and the priors of the sensor.
 struct MatchInput {
   const record::ImuRecording& imu;
   const record::GnssRecording& gnss;
@@ -18,7 +18,7 @@ struct MatchInput {
   Eigen::Vector3d lever_arm_b = Eigen::Vector3d::Zero();
   Eigen::Vector3d gyro_bias = Eigen::Vector3d::Zero();         ///< prior, rad/s
   double gyro_bias_sd = 0.0;                                   ///< rad/s, > 0
-  Eigen::Vector3d nearby_gyro_bias = Eigen::Vector3d::Zero();  ///< rad/s, where the iteration begins
+  Eigen::Vector3d nearby_gyro_bias = Eigen::Vector3d::Zero();  ///< rad/s, start of the iteration
   double accel_bias_sd = 0.0;                                  ///< m/s^2, > 0
   bool vehicle_forward = false;                                ///< the body's x axis points along the velocity, to `kSideslip`
 };
@@ -27,7 +27,7 @@ struct MatchResult {
   Eigen::Matrix3d C_b_e;             ///< at the start of sample `first`
   Eigen::Matrix3d psi_covariance_e;  ///< of psi_e, rad^2, scaled by the residuals
   Eigen::Vector3d gyro_bias;         ///< rad/s
-  Eigen::Vector3d accel_bias;        ///< m/s^2; with C_b_e it explains the forces, alone it may be far off
+  Eigen::Vector3d accel_bias;        ///< m/s^2; valid with C_b_e, which it compensates; alone it may be far off
   double gyro_bias_sd = 0.0;         ///< rad/s, root mean square of the axes
   double residual_sd = 0.0;          ///< m/s^2, of a mean specific force
   double horizontal_force = 0.0;     ///< m/s^2, root mean square over the window
@@ -36,13 +36,13 @@ struct MatchResult {
 };
 
 /// Second differences of the antenna's position (or first ones of its velocity, where these are less noisy) are exact weighted
-/// means of acceleration: hat (box) weights over the interval. The same means of the IMU's specific force, turned into one
+/// means of acceleration: hat (box) weights over the interval. The same means of the IMU's specific force, rotated to one
 /// inertial frame by the gyro, differ from them by one rotation: Wahba's problem for a first value, then Gauss-Newton over the
 /// attitude and both biases (with priors) from four headings, with weights from the residuals.
 ///
 /// Optimisation-based alignment: Wu and Pan (2013), Velocity/position integration formula, IEEE Trans. AES 49; there without
 /// biases.
-/// @return nothing where fewer than four observations exist
+/// @return none if there are fewer than four observations
 [[nodiscard]] std::optional<MatchResult> match_specific_force(const MatchInput& input);
 
 }  // namespace coast::ins

@@ -11,9 +11,9 @@
 namespace coast::ins {
 namespace {
 
-constexpr double kWantedNoise = 0.05;  // m/s^2, of an observed mean acceleration where the span can be chosen
+constexpr double kWantedNoise = 0.05;  // m/s^2, of an observed mean acceleration if the span can be chosen
 
-// The e-frame axes as they stood at the reference time serve as the inertial frame.
+// The inertial frame has the e-frame axes of the reference time.
 Eigen::Matrix3d C_e_i(double seconds) {
   return Eigen::AngleAxisd(geo::kEarthRate * seconds, Eigen::Vector3d::UnitZ()).toRotationMatrix();
 }
@@ -45,7 +45,7 @@ double median_sd(const Fixes& fixes, bool velocity) {
   return sds[sds.size() / 2];
 }
 
-// gamma = g + omega_ie x (omega_ie x r): gravitation alone, which is what an inertial frame sees.
+// gamma = g + omega_ie x (omega_ie x r): gravitation only, as required in an inertial frame.
 Eigen::Vector3d gravitation_i(const record::GnssFix& fix, double t) {
   const Eigen::Vector3d& r = fix.r_ea_e;
   const Eigen::Vector3d centrifugal(geo::kEarthRate * geo::kEarthRate * r.x(), geo::kEarthRate * geo::kEarthRate * r.y(), 0.0);

@@ -1,5 +1,5 @@
 #pragma once
-// Specific force as GNSS sees it: means over spans of seconds, from differences of the antenna's positions or velocities.
+// Specific force from GNSS: means over spans of seconds, from differences of the antenna's positions or velocities.
 
 #include <Eigen/Core>
 #include <vector>
@@ -19,8 +19,8 @@ struct ForceObservation {
   double velocity_sd = 0.0;    ///< m/s, one axis
 };
 
-/// Hat means from second differences of position, or box means from differences of velocity, whichever are less noisy, over
-/// spans of 1 to 10 s, as long as it takes for 0.05 m/s^2, or from fix to fix where these are farther apart. Exact for any
+/// Hat means from second differences of position, or box means from differences of velocity, whichever have less noise, over
+/// spans of 1 to 10 s, as long as required for 0.05 m/s^2, or from fix to fix if these are farther apart. Exact for any
 /// motion within the span. In time order; none across gaps.
 /// @param reference  origin of the observations' times; fixes from there to `end` are used
 [[nodiscard]] std::vector<ForceObservation> observe_specific_force(const record::GnssRecording& gnss, geo::GpsTime reference,

@@ -62,7 +62,7 @@ TrackPoint track_point(const record::GnssRecording& gnss, geo::GpsTime t) {
   std::ptrdiff_t first = at - fixes.begin();
   std::ptrdiff_t end = first;
   const auto wanted = [&](std::ptrdiff_t i) { return std::abs(fixes[static_cast<std::size_t>(i)].t - t); };
-  while (end - first < count) {  // the nearer neighbour joins
+  while (end - first < count) {  // the closer neighbour is added
     const bool left = first > 0 && (end == count || wanted(first - 1) < wanted(end));
     const double distance = left ? wanted(first - 1) : wanted(end);
     if (distance > 0.5 && end - first >= 5) break;
@@ -70,7 +70,7 @@ TrackPoint track_point(const record::GnssRecording& gnss, geo::GpsTime t) {
   }
 
   const auto n = static_cast<Eigen::Index>(end - first);
-  const Eigen::Vector3d origin = fixes[static_cast<std::size_t>(first)].r_ea_e;  // keeps the digits of the differences
+  const Eigen::Vector3d origin = fixes[static_cast<std::size_t>(first)].r_ea_e;  // preserves the digits of the differences
   Eigen::VectorXd times(n);
   Eigen::MatrixX3d positions(n, 3), velocities(n, 3);
   bool has_velocity = true;

@@ -1,5 +1,5 @@
 #pragma once
-// The GNSS antenna's motion near an instant, from the fixes around it.
+// The GNSS antenna's motion near an instant, from the surrounding fixes.
 
 #include <Eigen/Core>
 
@@ -16,11 +16,11 @@ struct TrackPoint {
   double sd_velocity = 0.0;  ///< m/s
 };
 
-/// Parabola through the fixes within half a second of t, more until there are five; velocities, where the fixes have them, by
+/// Parabola through the fixes within half a second of t, more until there are five; velocities, if the fixes have them, by
 /// a line. @pre at least three fixes
 [[nodiscard]] TrackPoint track_point(const record::GnssRecording& gnss, geo::GpsTime t);
 
-/// Median time between neighbouring fixes, s; zero where there are fewer than two.
+/// Median time between adjacent fixes, s; zero if there are fewer than two.
 [[nodiscard]] double typical_interval(const record::GnssRecording& gnss);
 
 /// sqrt(trace / 3): the standard deviation of one axis.

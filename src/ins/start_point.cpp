@@ -11,11 +11,11 @@
 namespace coast::ins {
 namespace {
 
-constexpr double kShortest = 1.0, kLongest = 12.0;  // s; longer where the second fix comes later
-constexpr std::size_t kFixes = 3;                   // at least, where they come within kLongest
+constexpr double kShortest = 1.0, kLongest = 12.0;  // s; longer if the second fix is later
+constexpr std::size_t kFixes = 3;                   // at least, if they are within kLongest
 constexpr double kVelocitySpan = 0.02;              // s, to both sides
 
-// The antenna as the strapdown moves it from a first guess.
+// The antenna's path by strapdown from an initial guess.
 struct PredictedPath {
   std::vector<double> t;  // s since the start
   std::vector<Eigen::Vector3d> r_e;
@@ -49,13 +49,13 @@ PredictedPath predict(const AlignmentInput& input, const StartAttitude& attitude
   return path;
 }
 
-// Two fixes tell a velocity.
+// Two fixes determine a velocity.
 geo::GpsTime second_fix(const record::GnssRecording& gnss, geo::GpsTime start) {
   const auto first = std::ranges::lower_bound(gnss.fixes, start, {}, &record::GnssFix::t);
   return gnss.fixes.end() - first < 2 ? start : (first + 1)->t;
 }
 
-// Residual = offset + slope t per axis, all axes with the same weights.
+// Residual = offset + slope t per axis, equal weights for all axes.
 struct Line {
   Eigen::Matrix2d normal = Eigen::Matrix2d::Zero();
   Eigen::Matrix<double, 2, 3> right = Eigen::Matrix<double, 2, 3>::Zero();
@@ -77,7 +77,7 @@ TrackPoint start_point(const AlignmentInput& input, const StartAttitude& attitud
 
   const record::GnssFix& near = input.gnss.fixes.front();
   const double sd = axis_sd(near.position_cov_n);
-  // The longer, the better the slope of the fixes (sqrt(2) sd / T), the worse the motion that is subtracted (force error T/2).
+  // With its length the slope of the fixes improves (sqrt(2) sd / T), and the subtracted motion degrades (force error T/2).
   const double horizon = std::clamp(std::sqrt(std::sqrt(8.0) * sd / attitude.force_error), kShortest, kLongest);
 
   Line line;
@@ -99,7 +99,7 @@ TrackPoint start_point(const AlignmentInput& input, const StartAttitude& attitud
   if (used < 2) return {guess.r_eb_e, guess.v_eb_e, rough.sd_position, rough.sd_velocity};
   const Eigen::Matrix2d cofactor = line.normal.inverse();
   const Eigen::Matrix<double, 2, 3> fitted = cofactor * line.right;
-  // Errors of neighbouring fixes are alike: their number takes nothing off the sigma of a position, little off that of the
+  // Errors of adjacent fixes are correlated: their number does not reduce the sigma of a position, and hardly that of the
   // slope.
   const double slope_sd = near.velocity ? axis_sd(near.velocity->cov_n) : std::sqrt(2.0) * sd / last;
   const double sd_velocity = std::hypot(std::max(slope_sd, std::sqrt(cofactor(1, 1))), 0.5 * attitude.force_error * last);

@@ -9,16 +9,16 @@
 namespace coast::ins {
 namespace {
 
-// Means over a quarter of a second: an engine's shake (10 Hz and more) averages out, the start of a movement does not.
+// Means over a quarter of a second: engine vibration (10 Hz and more) averages out, the start of a movement does not.
 constexpr double kBlock = 0.25;  // s
 constexpr std::size_t kBlocksPerSecond = 4;
 
-// Bounds that hold whatever the quietest part of the recording is (it may be a flight).
+// Bounds independent of the quietest part of the recording (which may be a flight).
 constexpr double kMaxForceSpread = 0.3;                  // m/s^2, of block means within a second
 constexpr double kMaxRateSpread = 1.0 * geo::kDegree;    // rad/s
 constexpr double kMaxRate = 6.0 * geo::kDegree;          // rad/s, bias of a poor MEMS included
-constexpr double kMaxForceError = 0.7;                   // m/s^2, of |f| against gravity: bias and scale of a poor MEMS
-constexpr double kForceFloor = 0.02, kRateFloor = 5e-4;  // a perfectly quiet recording has no quantile to scale by
+constexpr double kMaxForceError = 0.7;                   // m/s^2, of |f| relative to gravity: bias and scale of a poor MEMS
+constexpr double kForceFloor = 0.02, kRateFloor = 5e-4;  // a perfectly quiet recording has no quantile as scale
 constexpr double kQuietFactor = 12.0;
 
 struct Block {
@@ -26,10 +26,10 @@ struct Block {
   std::size_t last = 0;  // inclusive
   Eigen::Vector3d force = Eigen::Vector3d::Zero();
   Eigen::Vector3d rate = Eigen::Vector3d::Zero();
-  bool bridged = false;  ///< a gap of the recording: what is in it was not measured
+  bool bridged = false;  ///< a gap of the recording: its content was not measured
 };
 
-// A sample that bridges a gap is a block of its own, however long; so is every sample of an IMU slower than 2 Hz.
+// A sample that bridges a gap is a separate block of any length; so is every sample of an IMU slower than 2 Hz.
 std::vector<Block> block_means(const std::vector<record::ImuSample>& samples, double rate_hz) {
   const double longest = 1.5 / rate_hz + 0.1;  // s
   std::vector<Block> blocks;
@@ -77,17 +77,17 @@ double quantile(std::vector<double> values, double p) {
   return *nth;
 }
 
-// GNSS agrees with standing still between two fixes: no velocity, no displacement beyond what the uncertainties allow.
+// GNSS agrees with standstill between two fixes: no velocity, no displacement beyond the uncertainties.
 bool gnss_stands(const record::GnssFix& fix, const record::GnssFix& next) {
   constexpr double kSigmas = 4.0;
-  constexpr double kSlow = 0.1;  // m/s, whatever the fixes claim
+  constexpr double kSlow = 0.1;  // m/s, for any sigma of the fixes
   const double sd = std::sqrt(std::max(fix.position_cov_n.trace(), next.position_cov_n.trace()));
   if ((next.r_ea_e - fix.r_ea_e).norm() > kSlow * (next.t - fix.t) + kSigmas * sd) return false;
   if (!fix.velocity) return true;
   return fix.velocity->v_ea_n.norm() < kSlow + kSigmas * std::sqrt(fix.velocity->cov_n.trace());
 }
 
-// Marks blocks in which GNSS moves. Over at least a second, so that noise of close fixes is not taken for speed.
+// Marks blocks in which GNSS moves. Over at least a second, so that noise of close fixes does not appear as speed.
 void exclude_gnss_motion(const std::vector<record::ImuSample>& samples, const std::vector<Block>& blocks,
                          const record::GnssRecording& gnss, std::vector<bool>& still) {
   std::size_t next = 0;
@@ -101,7 +101,7 @@ void exclude_gnss_motion(const std::vector<record::ImuSample>& samples, const st
   }
 }
 
-// Time between two samples that neither of them covers.
+// Time between two samples not covered by either of them.
 bool missing_time(const std::vector<record::ImuSample>& samples, std::size_t i) {
   return (samples[i].t - samples[i - 1].t) > 1.5 * samples[i].dt + 0.1;
 }
@@ -131,7 +131,7 @@ std::vector<StaticPeriod> find_static_periods(const record::ImuRecording& body, 
                blocks[i].rate.norm() < kMaxRate && std::abs(blocks[i].force.norm() - gravity) < kMaxForceError;
   if (has_fixes) exclude_gnss_motion(samples, blocks, *gnss, still);
 
-  // Runs of still blocks whose means stay where the run began: a slow turn or tilt ends it.
+  // Runs of still blocks whose means stay close to those at its beginning: a slow rotation or tilt ends it.
   for (std::size_t i = 0; i < blocks.size();) {
     if (!still[i]) {
       ++i;

@@ -7,7 +7,7 @@
 namespace coast::ins {
 namespace {
 
-// Integral of exp([th s x]) over s in [0, 1], applied to v: what a constant rate does to a constant specific force.
+// Integral of exp([th s x]) over s in [0, 1], applied to v: effect of a constant rate on a constant specific force.
 // (1 - cos a)/a^2 and (a - sin a)/a^3 by their series below a^2 = 0.05 (remainders below 1e-15), where the closed forms cancel.
 Eigen::Vector3d integrated_rotation(const Eigen::Vector3d& th, const Eigen::Vector3d& v) {
   const double a2 = th.squaredNorm();
@@ -25,7 +25,7 @@ Eigen::Vector3d integrated_rotation(const Eigen::Vector3d& th, const Eigen::Vect
   return v + first * cross + second * th.cross(cross);
 }
 
-// One Newton step towards unit norm: the products above leave |q|^2 - 1 at a few 1e-16, its square is nothing.
+// One Newton step towards unit norm: the products above leave |q|^2 - 1 at a few 1e-16, its square is negligible.
 Eigen::Quaterniond renormalised(const Eigen::Quaterniond& q) {
   return Eigen::Quaterniond(q.coeffs() * (1.5 - 0.5 * q.squaredNorm()));
 }
@@ -43,7 +43,7 @@ BodyIncrement compensate_two_sample(const RawIncrement& previous, const RawIncre
 }
 
 SplitIncrement split(const RawIncrement& previous, const RawIncrement& current, double fraction) {
-  // The part up to `fraction` of a line through the mean rates at both intervals' middles, beyond the share of a constant.
+  // The part up to `fraction` of a line through the mean rates at both intervals' middles, minus that of a constant.
   Eigen::Vector3d dtheta = fraction * current.dtheta;
   Eigen::Vector3d dv = fraction * current.dv;
   if (previous.dt > 0.0) {
@@ -66,7 +66,7 @@ void Strapdown::step(const BodyIncrement& increment) {
   const double dt = increment.dt;
   const double half_turn = 0.5 * earth_rate_ * dt;  // of the Earth
 
-  // Specific force: the start attitude seen from the e-frame as it stands at mid-interval, turned by -w dt/2 about z.
+  // Specific force: the start attitude relative to the e-frame at mid-interval, rotated by -w dt/2 about z.
   const Eigen::Vector3d dv_start = C_b_e_ * increment.u;
   last_dv_e_ = {dv_start.x() + half_turn * dv_start.y(), dv_start.y() - half_turn * dv_start.x(), dv_start.z()};
 

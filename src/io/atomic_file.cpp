@@ -18,7 +18,7 @@ namespace fs = std::filesystem;
 
 namespace {
 
-// What is half written. A signal ends the process, not one writer: so there is one list of it, which is never destroyed.
+// Incomplete files. A signal ends the process, not one writer: so there is one list of them, which is never destroyed.
 struct Unfinished {
   std::mutex mutex;
   std::vector<fs::path> parts;
@@ -36,7 +36,7 @@ void forget(const fs::path& part) {
 }  // namespace
 
 void exit_without_unfinished_files(int status) {
-  unfinished().mutex.lock();  // for good: no other file is begun
+  unfinished().mutex.lock();  // permanently: no other file is begun
   for (const fs::path& part : unfinished().parts) ::unlink(part.c_str());
   ::_exit(status);
 }
@@ -54,7 +54,7 @@ AtomicFile::AtomicFile(const fs::path& path) : path_(path), written_(path) {
   if (!direct) {
     written_ += fmt::format(".part-{}", ::getpid());
     flags |= O_EXCL;
-    ::unlink(written_.c_str());  // left by a run that was killed under the same process number
+    ::unlink(written_.c_str());  // left by a killed run with the same process number
   }
   const std::scoped_lock lock(unfinished().mutex);
   descriptor_ = ::open(written_.c_str(), flags, 0666);
@@ -93,7 +93,7 @@ void AtomicFile::write(std::string_view bytes) {
 
 void AtomicFile::commit() {
   const int descriptor = descriptor_;
-  // close() can be the first to report a full quota or network disk.
+  // close() may be the first to report a full quota or network disk.
   descriptor_ = -1;
   if (::close(descriptor) != 0) {
     const int error = errno;

@@ -1,5 +1,5 @@
 #pragma once
-// Numbers in binary files, byte order stated.
+// Numbers in binary files with given byte order.
 
 #include <algorithm>
 #include <array>
@@ -10,7 +10,7 @@
 
 namespace coast::io {
 
-/// The number at `offset` of `bytes`; the caller has checked that it lies inside.
+/// The number at `offset` of `bytes`; the caller has checked that it is inside.
 template <class T>
 [[nodiscard]] T number_at(std::string_view bytes, std::size_t offset, bool big_endian = false) {
   std::array<char, sizeof(T)> raw;

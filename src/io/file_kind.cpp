@@ -19,7 +19,7 @@ bool is_upper(char c) {
   return std::isupper(static_cast<unsigned char>(c)) != 0;
 }
 
-/// "$GPGGA,", "$PUBX,": an address of capitals and figures.
+/// "$GPGGA,", "$PUBX,": an address of capitals and digits.
 bool is_nmea(std::string_view line) {
   if (line.size() < 7 || line[0] != '$' || !is_upper(line[1])) return false;
   const std::size_t comma = line.find(',');
@@ -37,7 +37,7 @@ std::optional<FileKind> binary_kind(std::string_view head) {
   if (head.starts_with("PK\x03\x04")) return FileKind{"a zip archive", "Unpack it and name the file inside."};
   if (head.size() > 262 && head.substr(257, 5) == "ustar")
     return FileKind{"a tar archive", "Unpack it and name the file inside."};
-  if (head.find("\xb5\x62") != std::string_view::npos)  // NMEA sentences may stand between its messages
+  if (head.find("\xb5\x62") != std::string_view::npos)  // NMEA sentences may be between its messages
     return FileKind{"a UBX file of a u-blox receiver",
                     "Convert it: to RINEX for `gnss: {ppk: ..}`, e.g. with convbin of RTKLIB, or to a table of positions."};
   return std::nullopt;
@@ -54,7 +54,7 @@ std::optional<FileKind> line_kind(std::string_view line) {
                     Content::kOrbits};
   if (line.starts_with("% program") || line.starts_with("%  GPST") || line.starts_with("%  UTC"))
     return FileKind{"a .pos file of RTKLIB", "It belongs under `gnss: {file: .., format: rtklib-pos}`.", Content::kPositions};
-  // A header; configurations name the column too, with signs of YAML about it.
+  // A header; configurations name the column too, but with YAML characters on the line.
   if (line.find("gyro_x_radps") != std::string_view::npos && line.find_first_of(":[]{}-") == std::string_view::npos)
     return FileKind{"a table of an IMU", "It belongs under `imu: {file: ..}` of a run.yaml.", Content::kImu};
   if (line.starts_with("schema: coast."))
@@ -67,7 +67,7 @@ std::optional<FileKind> line_kind(std::string_view line) {
 
 std::optional<FileKind> file_kind(std::string_view head) {
   if (auto kind = binary_kind(head)) return kind;
-  constexpr int kLines = 20;  // other text may stand above, as comments do
+  constexpr int kLines = 20;  // other text may come first, for example comments
   std::size_t at = 0;
   for (int i = 0; i < kLines && at < head.size(); ++i) {
     const std::size_t stop = std::min(head.find('\n', at), head.size());
@@ -82,7 +82,7 @@ void refuse_other_kind(const std::filesystem::path& file, FileKind::Content own,
   try {
     kind = file_kind(read_head(file, 4096));
   } catch (const InputError&) {
-    return;  // the error that led here says it
+    return;  // reported by the original error
   }
   if (kind && (kind->content == Content::kOther || kind->content != own))
     throw InputError({file.string(), 0, "this is " + kind->name, std::string(expected), kind->what_to_do});

@@ -1,5 +1,5 @@
 #pragma once
-// What a file is that is not what it was taken for: for messages.
+// Recognises the actual kind of a file of unexpected kind: for messages.
 
 #include <filesystem>
 #include <optional>
@@ -18,22 +18,22 @@ struct FileKind {
   Content content = Content::kOther;
 };
 
-/// What is neither a configuration file nor a table.
+/// Neither a configuration file nor a table.
 [[nodiscard]] inline bool is_no_table(FileKind::Content content) {
   using enum FileKind::Content;
   return content == kOther || content == kRinex || content == kOrbits;
 }
 
-/// The kind that the first bytes of a file show; nothing where they show none.
+/// The kind according to the first bytes of a file; none if they are not conclusive.
 [[nodiscard]] std::optional<FileKind> file_kind(std::string_view head);
 
-/// For the way of an error: says what the file is where that is the reason, and returns where it is not known to be another
-/// kind.
-/// @param own  what the file was taken for, and may be
+/// For use after a read error: reports the kind of the file if this is the cause, and returns if it is not known to be of
+/// another kind.
+/// @param own  the assumed kind, which is accepted
 /// @throws InputError  "this is a .. file"
 void refuse_other_kind(const std::filesystem::path& file, FileKind::Content own, std::string_view expected);
 
-/// What `read` returns; where it fails on a file of another kind than its own, says so.
+/// Returns the result of `read`; if it fails on a file of another kind, reports this.
 template <typename Read>
 auto read_as(const std::filesystem::path& file, FileKind::Content own, std::string_view expected, Read&& read) {
   try {

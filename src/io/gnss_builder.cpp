@@ -10,8 +10,8 @@ namespace coast::io {
 
 namespace {
 
-constexpr double kGnssNanShare = 0.2;  // receivers write empty rows where they have no fix
-// Printed digits may push correlations beyond 1, most where a standard deviation has one digit left; twice is no rounding.
+constexpr double kGnssNanShare = 0.2;  // receivers write empty rows without a fix
+// Rounding of digits may give correlations beyond 1, most if a standard deviation has one digit; a factor of two is an error.
 constexpr double kLeastShrink = 0.5;
 constexpr double kLeastEigenvalue = 1e-3;
 

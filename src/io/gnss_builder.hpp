@@ -1,5 +1,5 @@
 #pragma once
-// What every GNSS format does after parsing: uncertainty made sure of, order of time watched.
+// Steps after parsing common to all GNSS formats: checks of covariances and of time order.
 
 #include <Eigen/Core>
 #include <optional>
@@ -21,11 +21,11 @@ class GnssBuilder {
  public:
   explicit GnssBuilder(TableReader& table);
 
-  /// Position covariance of a row in the axes of its columns: positive definite, or refused.
+  /// Position covariance of a row in the axes of its columns: positive definite, or rejected.
   /// @throws InputError  a standard deviation that is zero, negative or not finite
   [[nodiscard]] Eigen::Matrix3d covariance(const SignedRoots& roots, std::string_view what, std::string_view key);
 
-  /// Row with NaN: left out and counted.
+  /// Row with NaN: omitted and counted.
   void leave_out_nan();
   void add(const record::GnssFix& fix);
   [[nodiscard]] Repairs& repairs() { return repairs_; }
@@ -39,7 +39,7 @@ class GnssBuilder {
   record::GnssRecording recording_;
 };
 
-/// Quality by RTKLIB's numbers; unknown where it is none of them.
+/// Quality from RTKLIB's number; unknown for other numbers.
 [[nodiscard]] record::FixQuality quality_from(double number);
 /// Covariance in north, east, up to north, east, down.
 [[nodiscard]] Eigen::Matrix3d neu_to_ned(const Eigen::Matrix3d& cov);

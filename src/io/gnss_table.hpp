@@ -6,7 +6,7 @@
 
 namespace coast::io {
 
-/// Reads a text table with the columns that the options name (position given).
+/// Reads a text table with the columns named in the options (position given).
 [[nodiscard]] record::GnssRecording read_gnss_table(TableReader& table, const GnssFileOptions& options,
                                                     std::optional<geo::GpsTime> near);
 

@@ -13,7 +13,7 @@ namespace coast::io {
 
 namespace {
 
-/// A blank keeps the character before, '&' is a blank.
+/// A blank keeps the previous character, '&' is a blank.
 void merge(std::string& text, std::string_view difference) {
   if (text.size() < difference.size()) text.resize(difference.size(), ' ');
   for (std::size_t i = 0; i < difference.size(); ++i)
@@ -43,7 +43,7 @@ void Hatanaka::Arc::continue_with(std::int64_t difference) {
   differences[static_cast<std::size_t>(order)] = difference;
   for (int i = order - 1; i >= 0; --i) {
     const auto at = static_cast<std::size_t>(i);
-    // Of a spoiled file the sum may leave the range: unsigned, it does so without harm.
+    // In a damaged file the sum may overflow: unsigned, this is harmless.
     differences[at] = static_cast<std::int64_t>(static_cast<std::uint64_t>(differences[at]) +
                                                 static_cast<std::uint64_t>(differences[at + 1]));
   }
@@ -124,7 +124,7 @@ bool Hatanaka::decode_epoch() {
   if (!count || *count < 0) refuse(in_quotes(epoch_.substr(flag_at + 1, 3)), "a number of satellites");
   const auto satellites = static_cast<std::size_t>(*count);
   const char flag = epoch_[flag_at];
-  if (flag != '0' && flag != '1' && flag != ' ') {  // lines of a header, or slips: as they are
+  if (flag != '0' && flag != '1' && flag != ' ') {  // header lines, or slips: unchanged
     ready_.push_back(epoch_);
     for (std::size_t i = 0; i < satellites && raw(line); ++i) {
       pass_header(line);
@@ -140,7 +140,7 @@ bool Hatanaka::decode_epoch() {
   give_epoch_line(satellites);
   std::map<std::string, SatelliteArcs> now;
   for (const std::string& id : ids) {
-    if (!raw(line)) return true;  // cut off: the reader sees an epoch that ends early
+    if (!raw(line)) return true;  // cut off: the reader finds an incomplete epoch
     SatelliteArcs arcs;
     if (const auto before = arcs_.find(id); before != arcs_.end()) arcs = std::move(before->second);
     decode_satellite(id, line, arcs);
@@ -183,7 +183,7 @@ void Hatanaka::give_epoch_line(std::size_t satellites) {
     ready_.push_back(epoch_.substr(0, 35));
     return;
   }
-  // RINEX 2 has twelve satellites on a line.
+  // RINEX 2 has twelve satellites per line.
   constexpr std::size_t kPerLine = 12;
   constexpr std::size_t kFirst = 32;
   ready_.push_back(epoch_.substr(0, kFirst + 3 * std::min(kPerLine, satellites)));

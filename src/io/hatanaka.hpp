@@ -1,5 +1,5 @@
 #pragma once
-// Hatanaka's compact RINEX, back to RINEX. Private to the room.
+// Decompression of Hatanaka's compact RINEX. Private to the room.
 
 #include <array>
 #include <cstdint>
@@ -14,22 +14,22 @@
 namespace coast::io {
 
 /// CRINEX 1.0 (of RINEX 2) and 3.0 (of RINEX 3 and 4): epoch lines as differences of characters, numbers as differences of up
-/// to ninth order in thousandths (Hatanaka 2008, Bull. GSI 55, 21-30). Clock offsets of the receiver are not given back.
+/// to ninth order in thousandths (Hatanaka 2008, Bull. GSI 55, 21-30). Clock offsets of the receiver are not restored.
 class Hatanaka {
  public:
-  /// Whether the first line of a file says so.
+  /// Whether the first line of a file is that of compact RINEX.
   [[nodiscard]] static bool begins(std::string_view first_line);
-  /// @param first_line  which was read from `lines` already
+  /// @param first_line  already read from `lines`
   Hatanaka(LineReader& lines, std::string_view first_line);
 
   /// The next line of the RINEX file; the view holds until the next call.
-  /// @throws InputError  not what its format says, with the line of the compact file
+  /// @throws InputError  invalid content, with the line of the compact file
   [[nodiscard]] bool next(std::string_view& line);
 
  private:
-  /// One number from epoch to epoch.
+  /// One number over successive epochs.
   struct Arc {
-    int order = -1;  ///< of the highest difference known; -1: none
+    int order = -1;  ///< of the highest known difference; -1: none
     int highest = 0;
     std::array<std::int64_t, 10> differences{};
     void begin(int highest_order, std::int64_t value);
@@ -52,7 +52,7 @@ class Hatanaka {
   LineReader& lines_;
   bool compact3_ = false;
   bool in_header_ = true;
-  std::map<char, std::size_t> types_;  ///< numbers per system; ' ' in RINEX 2
+  std::map<char, std::size_t> types_;  ///< number of types per system; ' ' in RINEX 2
   std::string epoch_;
   std::map<std::string, SatelliteArcs> arcs_;
   std::deque<std::string> ready_;

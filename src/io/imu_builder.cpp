@@ -10,9 +10,9 @@ namespace coast::io {
 
 namespace {
 
-constexpr double kGapFactor = 1.5;  // a step of more than this many median intervals has lost samples
+constexpr double kGapFactor = 1.5;  // samples are missing in a step longer than this many median intervals
 
-/// Median step of the recording; of an even sample of at most 65536 steps where it is long.
+/// Median step of the recording; of an even subset of at most 65536 steps if it is long.
 double median_interval(const std::vector<record::ImuSample>& samples) {
   const std::size_t stride = std::max<std::size_t>(1, samples.size() / 65536);
   std::vector<double> steps;
@@ -23,7 +23,7 @@ double median_interval(const std::vector<record::ImuSample>& samples) {
   return *middle;
 }
 
-/// Samples over the time that they cover: a clock of milliseconds has a median step that is nobody's rate.
+/// Number of samples over the covered time: with a clock of 1 ms resolution the median step does not give the rate.
 double rate_without_gaps(const std::vector<record::ImuSample>& samples, double usual_interval) {
   double covered = 0.0;
   std::size_t steps = 0;
@@ -93,7 +93,7 @@ void finish_imu(record::ImuRecording& recording, bool increments, TimeTag tag) {
     const double step = s.t - end_before;
     const bool gap = step > kGapFactor * interval;
     if (gap) gaps.add(end_before, step);
-    // The interval that the sample itself measured; beyond it, in a gap, the rate is linear from the sample before.
+    // The interval measured by the sample itself; in the rest of a gap, the rate is linear from the sample before.
     const double own = gap ? interval : step;
     const Eigen::Vector3d rate = increments ? Eigen::Vector3d(s.dtheta / own) : s.dtheta;
     const Eigen::Vector3d force = increments ? Eigen::Vector3d(s.dv / own) : s.dv;

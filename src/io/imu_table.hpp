@@ -6,7 +6,7 @@
 
 namespace coast::io {
 
-/// Reads a text table with the columns that the options name (all of them given).
+/// Reads a text table with the columns named in the options (all of them given).
 [[nodiscard]] record::ImuRecording read_imu_table(TableReader& table, const ImuFileOptions& options,
                                                   std::optional<geo::GpsTime> near);
 

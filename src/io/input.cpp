@@ -23,7 +23,7 @@ constexpr std::size_t kBlock = std::size_t{1} << 18;
 constexpr std::size_t kMaxLine = std::size_t{1} << 20;
 // Tables of numbers compress by less than 20, gzip of one repeated byte by 1000.
 constexpr std::uint64_t kMaxExpansion = 200;
-constexpr std::uint64_t kFreeExpansion = std::uint64_t{64} << 20;  // bytes that any file may expand to
+constexpr std::uint64_t kFreeExpansion = std::uint64_t{64} << 20;  // bytes allowed for any file
 
 [[noreturn]] void refuse(const std::string& name, std::string found, std::string expected, std::string what_to_do) {
   throw InputError({name, 0, std::move(found), std::move(expected), std::move(what_to_do)});
@@ -81,12 +81,12 @@ ByteSource& ByteSource::operator=(ByteSource&&) noexcept = default;
 std::size_t ByteSource::read(char* to, std::size_t size) {
   std::size_t done = 0;
   while (done < size) {
-    // Not more at once: a file that expands without end is to be seen early.
+    // In small pieces: a file that expands without end must be detected early.
     const auto chunk = static_cast<unsigned>(std::min(size - done, std::size_t{16} << 20));
     const int n = gzread(handle_->file, to + done, chunk);
     int status = Z_OK;
     const char* text = gzerror(handle_->file, &status);
-    // zlib says Z_BUF_ERROR, with data still delivered, where the compressed stream ends before its trailer.
+    // zlib returns Z_BUF_ERROR, with data still delivered, if the compressed stream ends before its trailer.
     if (n < 0 || status == Z_BUF_ERROR)
       refuse(name_, fmt::format("the gzip data are damaged or end early ({})", status == Z_BUF_ERROR ? "no end mark" : text),
              "a whole file", "Copy or download the file again.");
@@ -121,7 +121,7 @@ std::string read_all(const fs::path& path, std::uint64_t most) {
   };
   require_within(source.expected_size());
   std::string text;
-  // One byte more than expected, so that the end is seen without a second growth.
+  // One byte more than expected, so that the end is detected without a second growth.
   std::size_t size = std::max<std::size_t>(static_cast<std::size_t>(source.expected_size()) + 1, 4096);
   std::size_t used = 0;
   while (true) {

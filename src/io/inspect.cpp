@@ -112,7 +112,7 @@ void describe_gnss(const record::GnssRecording& gnss, Inspection& result) {
                                          range(horizontal), range(vertical)));
 }
 
-/// What a size of the specific force that is no gravity may mean.
+/// Possible causes of a size of the specific force that is not gravity.
 std::string size_hint(double ratio, double rate_hz) {
   const auto near = [&](double value) { return ratio > 0.8 * value && ratio < 1.25 * value; };
   if (near(1.0 / geo::kStandardGravity)) return " It looks like g: set `units: {accel: g}`.";
@@ -134,7 +134,7 @@ Eigen::Vector3d nearest_axis(const Eigen::Vector3d& direction) {
   return Eigen::Vector3d::Unit(i) * (direction[i] < 0.0 ? -1.0 : 1.0);
 }
 
-/// `axes:` that make the axis along `down` point down, and the one along `forward` forward.
+/// `axes:` so that the axis along `down` points down, and the one along `forward` forward.
 std::string axes_mapping(const Eigen::Vector3d& down, const Eigen::Vector3d& forward) {
   const Eigen::Vector3d d = nearest_axis(down);
   const Eigen::Vector3d f = nearest_axis(forward - d.dot(forward) * d);
@@ -195,7 +195,7 @@ void check_axes(const Eigen::Vector3d& f_rest, const std::optional<TravelDirecti
   }
 }
 
-/// Whole-second differences between time scales that people mix up, and their names.
+/// Integer-second differences between time scales that are often confused, and their names.
 /// @param step  between fixes, s: turns are matched within one
 const char* scale_of(double shift, double step) {
   const double s = std::abs(shift);
@@ -213,7 +213,7 @@ void check_time(const TimeMatch& match, double step, Inspection& result) {
   result.time_correlation = match.correlation;
   const double strength = std::abs(match.correlation);
   if (strength < kTimeCorrelation) {
-    // No warning: a drone or a boat in a current does not move along its own axis.
+    // No warning: a drone or a boat in a current may not move along its own axis.
     result.sentences.push_back(fmt::format(
         "Times: the course of GNSS does not follow the turns of the IMU at any shift within 45 s (correlation {:.2f}): a "
         "vehicle that does not move along its own axis, or times further apart.",

@@ -12,7 +12,7 @@ namespace coast::io {
 
 namespace {
 
-/// Whole lines of a file; none where it cannot be read.
+/// Complete lines of a file; none if it cannot be read.
 std::vector<std::string> whole_lines(const std::filesystem::path& path) {
   std::ifstream in(path, std::ios::binary);
   std::stringstream text;
@@ -34,7 +34,7 @@ Journal::Journal(const std::filesystem::path& path, std::string_view of) : path_
     lines_.erase(lines_.begin());
   else
     lines_.clear();
-  // Written again and not appended to: a line that was cut off would spoil the next one.
+  // Written again instead of appended to: an incomplete line would spoil the next one.
   std::string kept(of);
   kept += '\n';
   for (const std::string& line : lines_) kept += line + '\n';

@@ -1,4 +1,4 @@
-// KML 2.2 with Google's tracks, which have times. Viewers take `absolute` altitudes as above mean sea level.
+// KML 2.2 with Google's tracks, which have times. Viewers interpret `absolute` altitudes as above mean sea level.
 
 #include <fmt/format.h>
 
@@ -54,7 +54,7 @@ const TrackStyle& style_of(const record::TrajectoryEpoch& epoch) {
   return epoch.gnss ? kStyles[static_cast<std::size_t>(epoch.gnss->quality)] : kWithoutGnss;
 }
 
-/// "2025-07-08T19:34:18.499Z", rounded to a millisecond first: second 60 is a leap second's alone.
+/// "2025-07-08T19:34:18.499Z", rounded to a millisecond first: second 60 is only for a leap second.
 std::string utc(geo::GpsTime t) {
   constexpr std::int64_t kMillisecond = 1'000'000;
   const geo::Calendar c =
@@ -82,7 +82,7 @@ class KmlWriter final : public TrajectoryWriter {
     const TrackStyle& style = style_of(epoch);
     const Point point{epoch.nav.t, epoch.nav.r_eb_e};
     if (style_ != nullptr && &style != style_) {
-      track_.push_back(point);  // one track begins where the other ends
+      track_.push_back(point);  // one track begins at the end of the previous one
       put_track();
     }
     style_ = &style;
@@ -93,7 +93,7 @@ class KmlWriter final : public TrajectoryWriter {
       pending_ = point;
   }
   void close() override {
-    if (pending_) track_.push_back(*pending_);  // the track ends where the mission ends
+    if (pending_) track_.push_back(*pending_);  // the last track ends at the end of the mission
     put_track();
     text_.put("</Document>\n</kml>\n");
     text_.flush();
@@ -113,7 +113,7 @@ class KmlWriter final : public TrajectoryWriter {
                     style.id, style.colour));
   }
 
-  /// All times come before all places.
+  /// All times precede all places.
   void put_track() {
     if (track_.empty()) return;
     text_.put(fmt::format("<Placemark><name>{}</name><styleUrl>#{}</styleUrl><gx:Track><altitudeMode>{}</altitudeMode>\n",
@@ -143,9 +143,9 @@ class KmlWriter final : public TrajectoryWriter {
   TextBuffer text_;
   std::optional<double> geoid_height_;
   double min_step_;
-  const TrackStyle* style_ = nullptr;  ///< of the track that is being made
+  const TrackStyle* style_ = nullptr;  ///< of the current track
   std::vector<Point> track_;
-  std::optional<Point> pending_;  ///< the last epoch, too near to the point before it
+  std::optional<Point> pending_;  ///< the last epoch, too close to the previous point
 };
 
 }  // namespace

@@ -12,18 +12,18 @@ namespace coast::io {
 namespace {
 
 constexpr double kGrid = 0.05;          // s
-constexpr double kMostNodes = 2e6;      // 96 MB; beyond 28 h the grid widens
-constexpr double kLegLength = 0.45;     // s; shorter legs make course rates out of noise
+constexpr double kMostNodes = 2e6;      // 96 MB; beyond 28 h the grid step is larger
+constexpr double kLegLength = 0.45;     // s; in shorter legs course rates are dominated by noise
 constexpr double kLongestLeg = 2.5;     // s
-constexpr double kLeastMoving = 0.3;    // m/s, horizontal: slower, a course is noise
+constexpr double kLeastMoving = 0.3;    // m/s, horizontal: below it a course is noise
 constexpr double kMostMoving = 1.5;     // m/s
 constexpr double kMaxShift = 45.0;      // s
 constexpr double kShiftStep = 0.1;      // s
-constexpr std::size_t kMaxLegs = 3000;  // those that turn most
+constexpr std::size_t kMaxLegs = 3000;  // those with the largest turn rates
 constexpr double kLeastTurn = 0.02;     // rad/s
 constexpr std::size_t kLeastLegs = 20;
 
-/// Velocity in N, E, D at a fix: as stated, else by differences.
+/// Velocity in N, E, D at a fix: as given, else by differences.
 Eigen::Vector3d velocity_at(const std::vector<record::GnssFix>& fixes, std::size_t i) {
   if (fixes[i].velocity) return fixes[i].velocity->v_ea_n;
   std::size_t a = i;
@@ -35,7 +35,7 @@ Eigen::Vector3d velocity_at(const std::vector<record::GnssFix>& fixes, std::size
   return geo::C_n_e(geo::geodetic_from_ecef(fixes[i].r_ea_e)).transpose() * v_e;
 }
 
-/// Speed above which a course means something: five times the noise of the velocities.
+/// Least speed for a valid course: five times the noise of the velocities.
 double moving_speed(const record::GnssRecording& gnss) {
   const record::GnssFix& fix = gnss.fixes[gnss.fixes.size() / 2];
   const double sigma =
@@ -114,7 +114,7 @@ std::vector<GnssLeg> gnss_legs(const record::GnssRecording& gnss, geo::GpsTime o
 std::optional<RestForce> rest_force(const ImuMeans& means, const std::vector<GnssLeg>& legs) {
   RestForce rest;
   rest.force.setZero();
-  // Standstill by GNSS: below 0.1 m/s, or three times what its quietest quarter shows (noise), at most 0.3 m/s.
+  // Standstill by GNSS: below 0.1 m/s, or three times the speed of its quietest quarter (noise), at most 0.3 m/s.
   std::vector<double> speeds;
   speeds.reserve(legs.size());
   for (const GnssLeg& leg : legs) speeds.push_back(leg.speed);
@@ -192,7 +192,7 @@ std::optional<TimeMatch> match_time(const ImuMeans& means, const std::vector<Gns
   std::vector<double> r(2 * steps + 1);
   for (std::size_t i = 0; i < r.size(); ++i) {
     const Correlation c = correlate(means, moving, down, shift_of(i));
-    // A shift that leaves few legs inside the recording proves nothing.
+    // A shift with few legs inside the recording is not significant.
     r[i] = c.n < 0.5 * static_cast<double>(moving.size()) || c.n < kLeastLegs ? 0.0 : c.r();
   }
   const auto best = std::max_element(r.begin(), r.end(), [](double a, double b) { return std::abs(a) < std::abs(b); });
@@ -212,7 +212,7 @@ std::optional<TimeMatch> match_time(const ImuMeans& means, const std::vector<Gns
 
 std::optional<TravelDirection> travel_direction(const ImuMeans& means, const std::vector<GnssLeg>& legs, double shift,
                                                 const Eigen::Vector3d& f_rest) {
-  // Level axes: z along the plumb line, x as near to body x (y where x is steep) as level allows.
+  // Level axes: z along the plumb line, x as close as possible to body x (y if x is steep).
   const Eigen::Vector3d down = -f_rest.normalized();
   const Eigen::Vector3d axis = std::abs(down.x()) < 0.8 ? Eigen::Vector3d::UnitX() : Eigen::Vector3d::UnitY();
   Eigen::Vector3d level_x = axis - down.dot(axis) * down;

@@ -12,7 +12,7 @@ namespace coast::io {
 
 namespace {
 
-constexpr double kLargestCounter = 9007199254740992.0;  // beyond it a double does not hold every whole number
+constexpr double kLargestCounter = 9007199254740992.0;  // above it a double does not represent every integer
 
 class PacketTable {
  public:

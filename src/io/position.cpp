@@ -13,7 +13,7 @@ namespace coast::io {
 
 namespace {
 
-// Anything that navigates is within these bounds of the ellipsoid; outside, columns or units are wrong.
+// All vehicles are within these bounds of the ellipsoid; outside, columns or units are wrong.
 constexpr double kLowest = -12000.0;
 constexpr double kHighest = 2.0e6;
 

@@ -1,5 +1,5 @@
 #pragma once
-// Positions of a table, in whatever frame it has them, to ECEF.
+// Positions of a table, in any supported frame, to ECEF.
 
 #include <Eigen/Core>
 #include <optional>
@@ -11,12 +11,12 @@ namespace coast::io {
 /// Converts the three position columns of a row.
 class PositionConverter {
  public:
-  /// @throws InputError  the options lack what the frame needs (zone, origin)
+  /// @throws InputError  the options lack values required for the frame (zone, origin)
   PositionConverter(const PositionOptions& options, const TableReader& table);
 
   /// @throws InputError  outside its range, or impossibly far from the Earth's surface; with the line
   [[nodiscard]] Eigen::Vector3d to_ecef(double a, double b, double c) const;
-  /// The warning that heights stay above mean sea level, if so.
+  /// The warning that heights remain above mean sea level, if so.
   [[nodiscard]] record::Events events() const;
 
  private:

@@ -9,7 +9,7 @@ namespace coast::io {
 
 namespace {
 constexpr long kAlwaysAllowed = 10;
-constexpr double kRepeatedShare = 0.5;  // a log that writes every row twice is readable
+constexpr double kRepeatedShare = 0.5;  // a log with every row twice is readable
 constexpr double kDisorderShare = 0.01;
 constexpr double kLongestStep = 86400.0;  // s; no mission pauses for a day
 }  // namespace

@@ -1,5 +1,5 @@
 #pragma once
-// What a reader repaired, counted; and the order of time, watched.
+// Counts of repairs by a reader; check of time order.
 
 #include <optional>
 #include <string>
@@ -12,12 +12,12 @@
 
 namespace coast::io {
 
-/// Counts repairs by kind and turns them into events. Each kind has a share of rows above which the file is refused.
+/// Counts repairs by kind and turns them into events. Each kind has a fraction of rows above which the file is rejected.
 class Repairs {
  public:
-  /// @param most_share  more than this share of all rows (and more than 10) is no slip but a wrong file or format
+  /// @param most_share  more than this fraction of all rows (and more than 10) means a wrong file or format
   void add(const char* kind, const char* what, double most_share, const InputError& as_error, std::optional<geo::GpsTime> time);
-  /// Appends one event per kind.  @throws InputError a kind goes beyond its share (with the place of its first)
+  /// Appends one event per kind.  @throws InputError a kind exceeds its fraction (with the place of its first)
   void finish(long rows, record::Events& events) const;
 
  private:
@@ -32,8 +32,8 @@ class Repairs {
   std::vector<Entry> entries_;
 };
 
-/// Watches that times increase. Steps back by no more than a sample, and repeated times, are left out and counted; larger
-/// ones are refused.
+/// Checks that times increase. Steps back by at most one sample, and repeated times, are omitted and counted; larger
+/// ones are rejected.
 class TimeOrder {
  public:
   TimeOrder(WeekClock::MakeError error, Repairs& repairs) : error_(std::move(error)), repairs_(repairs) {}

@@ -26,10 +26,10 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr std::string_view kMark = ".coast-results";
-constexpr std::string_view kBegun = "begun ";  // and the name of the file that closes a set of results
+constexpr std::string_view kBegun = "begun ";  // followed by the name of the file that completes a set of results
 constexpr std::string_view kTitle = "# bytes and names of what coast wrote here; it replaces no other file of this folder\n";
 
-// Lines of the mark: "bytes name", and "begun name". Several lengths of one file stand side by side, so that lines are only
+// Lines of the mark: "bytes name", and "begun name". Several lengths of one file are kept, so that lines are only
 // ever appended.
 using Lines = std::set<std::string>;
 
@@ -55,21 +55,21 @@ std::optional<Lines> mark_of(const fs::path& folder) {
 void append(const fs::path& mark, const std::string& text, int flags) {
   const int descriptor = ::open(mark.c_str(), O_WRONLY | O_APPEND | O_CLOEXEC | flags, 0666);
   const auto size = static_cast<ssize_t>(text.size());
-  // In one piece: two jobs may write into one folder.
+  // In one call: two jobs may write into one folder.
   const bool whole = descriptor >= 0 && ::write(descriptor, text.data(), text.size()) == size;
   const int error = errno;
   if (descriptor >= 0) ::close(descriptor);
   if (!whole) throw OutputError(mark.string(), std::strerror(error));
 }
 
-/// A place that does not depend on how it is spelt; a link at its end is the link.
+/// A path independent of its spelling; a link at its end is not followed.
 fs::path place_of(const fs::path& file) {
   std::error_code ignored;
   const fs::path whole = fs::absolute(file, ignored);
   return fs::weakly_canonical(whole.parent_path(), ignored) / whole.filename();
 }
 
-// The inputs of one job are those of its process, wherever they are opened; nothing but the refusal depends on them.
+// Inputs are recorded per process, wherever they are opened; they are only used for the refusal.
 struct ReadFiles {
   std::mutex mutex;
   std::set<fs::path> places;
@@ -85,7 +85,7 @@ bool was_read(const fs::path& file) {
   return files.places.contains(place_of(file));
 }
 
-/// What a version without marks wrote beside one of its files; names that end with '*' are beginnings of names.
+/// Files that a version without marks wrote next to one of its files; names ending with '*' are prefixes.
 struct EarlierResults {
   std::string_view file;
   std::string_view contains;
@@ -135,19 +135,19 @@ Lines lines_of_earlier_version(const fs::path& folder) {
 void require_replaceable(const fs::path& file, const Lines& lines) {
   std::error_code ignored;
   const auto status = fs::symlink_status(file, ignored);
-  // A journal judges by its first line whose it is, and grows after it was listed.
+  // A journal identifies its study in its first line, and grows after it was listed.
   if (!fs::exists(status) || file.extension() == ".partial") return;
   if (was_read(file))
     throw InputError({file.string(), 0, "an input of this job would be replaced by its results", "",
                       "Name another folder for the results with --out."});
-  if (!fs::is_regular_file(status) && !fs::is_symlink(status)) return;  // AtomicFile knows what to do with it
+  if (!fs::is_regular_file(status) && !fs::is_symlink(status)) return;  // AtomicFile handles it
   const bool is_link = fs::is_symlink(status);
   if (!is_link && lines.contains(line_of(file.filename().string(), fs::file_size(file, ignored)))) return;
   throw InputError({file.string(), 0, "this file would be replaced, but coast did not write it, or it was changed since", "",
                     "Name another folder for the results with --out, or move the file away."});
 }
 
-/// The process number at the end of NAME.part-NUMBER, and NAME; nothing for other names.
+/// The process number at the end of NAME.part-NUMBER, and NAME; none for other names.
 std::optional<std::pair<std::string, pid_t>> part_of(const std::string& name) {
   constexpr std::string_view kPart = ".part-";
   const std::size_t at = name.rfind(kPart);

@@ -18,7 +18,7 @@ class RinexLines {
   explicit RinexLines(const std::filesystem::path& file);
   /// The next line; the view holds until the next call.
   [[nodiscard]] bool next(std::string_view& line);
-  /// The line given last comes once more.
+  /// Repeats the last line at the next call.
   void put_back() { again_ = true; }
   [[nodiscard]] const std::string& name() const { return lines_.name(); }
   [[nodiscard]] const record::Events& events() const { return lines_.events(); }
@@ -33,24 +33,24 @@ class RinexLines {
   bool again_ = false;
 };
 
-/// Text of a field; what lies beyond the end of the line is blank.
+/// Text of a field; beyond the end of the line it is blank.
 [[nodiscard]] std::string_view field(std::string_view line, std::size_t at, std::size_t width);
 [[nodiscard]] std::optional<int> integer_field(std::string_view line, std::size_t at, std::size_t width);
-/// With D or E before the exponent. Finite.
+/// With D or E as exponent letter. Finite.
 [[nodiscard]] std::optional<double> number_field(std::string_view line, std::size_t at, std::size_t width);
 /// An excerpt in quotation marks, for messages.
 [[nodiscard]] std::string in_quotes(std::string_view text, std::size_t length = 40);
 /// Columns 61 to 80 of a header line.
 [[nodiscard]] std::string_view label_of(std::string_view line);
 
-/// What the first line of a RINEX file says.
+/// Content of the first line of a RINEX file.
 struct RinexKind {
   int major = 0;       ///< version: 2, 3 or 4
   char type = ' ';     ///< 'O' observations, 'N' navigation messages; of version 2 also 'G' and 'H'
   char system = ' ';   ///< of all satellites, 'M' for several
-  std::string stated;  ///< the type in the file's words, for messages
+  std::string stated;  ///< the type as in the file, for messages
 };
-/// @throws InputError  the first line is not of RINEX, or of a version that is not known
+/// @throws InputError  the first line is not of RINEX, or of an unknown version
 [[nodiscard]] RinexKind read_kind(RinexLines& lines);
 
 /// "G05", "G 5", " 5" (of `system`)
@@ -59,9 +59,9 @@ struct RinexKind {
 inline constexpr double kGpsMinusBeidou = 14.0;  ///< s
 
 enum class RinexTime { kGps, kUtc, kBeidou };
-/// Calendar fields to GPS time; nothing where they are none.
+/// Calendar fields to GPS time; none if invalid.
 [[nodiscard]] std::optional<geo::GpsTime> gps_time(const geo::Calendar& calendar, RinexTime scale);
-/// 2021 of 21, 1999 of 99 and of 1999
+/// 2021 from 21, 1999 from 99 and from 1999
 [[nodiscard]] int full_year(int year);
 
 }  // namespace coast::io

@@ -1,4 +1,4 @@
-// RINEX 3.05 and 4.01 files (IGS/RTCM RINEX WG), which differ in the first line and in what stands before a navigation message.
+// RINEX 3.05 and 4.01 files (IGS/RTCM RINEX WG), which differ in the first line and in the line before a navigation message.
 
 #include <fmt/format.h>
 
@@ -33,7 +33,7 @@ std::string first_line(RinexVersion version, const char* type, const char* syste
          header_line(fmt::format("{:<20}", "coast"), "PGM / RUN BY / DATE");
 }
 
-/// "C1C", "L1C", ... of each system, and where each stands.
+/// "C1C", "L1C", ... of each system, and their positions.
 struct Columns {
   struct Column {
     Signal signal;
@@ -148,7 +148,7 @@ void put_epoch(std::string& text, const record::ObservationEpoch& epoch, const C
   }
 }
 
-/// "0.123456789012E-03" without the leading digit lost: 19 columns, exponent of two digits.
+/// "0.123456789012E-03" including the leading digit: 19 columns, exponent of two digits.
 std::string number19(double value) {
   return fmt::format("{:19.12E}", value);
 }

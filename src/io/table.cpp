@@ -14,8 +14,8 @@ namespace coast::io {
 
 namespace {
 
-constexpr long kMaxTrailingLines = 3;   // other text after the last row that is taken for a footer
-constexpr long kRowsBeforeFooter = 10;  // and only after so many good rows
+constexpr long kMaxTrailingLines = 3;   // other text after the last row that is treated as a footer
+constexpr long kRowsBeforeFooter = 10;  // but only after this number of valid rows
 
 bool is_comment(std::string_view line) {
   return !line.empty() && (line.front() == '#' || line.front() == '%');
@@ -180,8 +180,8 @@ bool TableReader::next() {
   if (!next_line(line)) return false;
   const std::size_t previous_length = last_field_length_;
   const bool good = parse(line);
-  // A last line without a line feed may have lost its end. Whole fields that are missing show; a last number that is shorter
-  // than the one above may have lost digits.
+  // A last line without a line feed may be incomplete. Missing fields are detected; a last number shorter than the one above
+  // may have lost digits.
   const bool cut_off = !lines_.terminated() && rows_ > 0 && (!good || last_field_length_ < previous_length);
   if (good && !cut_off) {
     ++rows_;
@@ -229,7 +229,7 @@ bool TableReader::wrong_columns(std::size_t count) {
   return false;
 }
 
-// One pass from the left; columns that nobody asked for are passed over by memchr.
+// One pass from the left; unused columns are skipped by memchr.
 bool TableReader::parse_plain(std::string_view line) {
   const char* p = line.data();
   const char* const end = p + line.size();

@@ -1,5 +1,5 @@
 #pragma once
-// Small helpers on text that several readers share.
+// Small text functions shared by several readers.
 
 #include <charconv>
 #include <optional>
@@ -25,10 +25,10 @@ namespace coast::io {
   return s;
 }
 
-/// A number that fills the whole text (blanks around it allowed); `nan` and `inf` are numbers here.
+/// A number that fills the whole text (surrounding blanks allowed); `nan` and `inf` are numbers here.
 [[nodiscard]] std::optional<double> parse_number(std::string_view s);
 
-/// Splits at the delimiter, or at runs of white space where it is ' '. Quoted fields keep their delimiters.
+/// Splits at the delimiter, or at runs of white space if it is ' '. Quoted fields keep their delimiters.
 void split(std::string_view line, char delimiter, std::vector<std::string_view>& fields);
 
 /// Shortened for messages, control characters shown as '?'.

@@ -11,7 +11,7 @@
 
 namespace coast::io {
 
-/// A text that goes to a file in blocks.
+/// A text that is written to a file in blocks.
 class TextBuffer {
  public:
   explicit TextBuffer(AtomicFile& file) : file_(file) { text_.reserve(kBlock + 4096); }

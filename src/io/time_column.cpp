@@ -15,7 +15,7 @@ namespace {
 
 constexpr double kWeekSeconds = 604800.0;
 
-/// Reads an unsigned whole number and moves on; nothing where there is no digit.
+/// Reads an unsigned integer and advances; none if there is no digit.
 std::optional<int> take_int(std::string_view& s) {
   int value = 0;
   const auto [end, status] = std::from_chars(s.data(), s.data() + s.size(), value);
@@ -162,7 +162,7 @@ geo::GpsTime TimeColumn::read() {
     case TimeKind::kUtc:
       return from_text() + offset;
     case TimeKind::kUnix:
-      // The offset comes after: a double of POSIX seconds has no digits to lose.
+      // The offset is added afterwards: a double of POSIX seconds has no spare digits.
       return geo::GpsTime::from_unix_utc(table_.number(slot_) * options_.unit_s) + offset;
     case TimeKind::kWeekAndSeconds: {
       const double week = table_.number(slot_);

@@ -15,7 +15,7 @@ namespace coast::io {
 
 namespace {
 
-/// Position, velocity and attitude as files show them.
+/// Position, velocity and attitude as in files.
 struct LocalState {
   geo::Geodetic p;
   Eigen::Vector3d v_eb_n;
@@ -117,7 +117,7 @@ class CsvWriter final : public TrajectoryWriter {
   TextBuffer text_;
 };
 
-/// "2025/07/08 19:34:18.499123", rounded to a microsecond without ever reaching second 60: at 100 km/h a millisecond is 3 cm.
+/// "2025/07/08 19:34:18.499123", rounded to a microsecond without giving second 60: at 100 km/h a millisecond is 3 cm.
 void put_calendar(TextBuffer& text, geo::GpsTime t) {
   constexpr std::int64_t kMicrosecond = 1'000;
   const geo::GpsTime rounded =
@@ -136,8 +136,8 @@ void put_calendar(TextBuffer& text, geo::GpsTime t) {
   text.put_fixed(c.second, 6);
 }
 
-/// Digits beyond the usual ones, so that standard deviations below a tenth of a millimetre keep four of their own. At most
-/// seven: a nanometre still has them.
+/// Additional digits, so that standard deviations below a tenth of a millimetre have four digits of their own. At most
+/// seven: enough for a nanometre.
 int more_digits(const Eigen::Matrix3d& covariance) {
   constexpr double kUsual = 1e-4;  // m or m/s
   constexpr int kMost = 7;
@@ -165,7 +165,7 @@ constexpr std::string_view kPosHeader =
 constexpr std::string_view kPosVelocityHeader =
     "    vn(m/s)    ve(m/s)    vu(m/s)     sdvn     sdve     sdvu    sdvne    sdveu    sdvun";
 
-/// RTKLIB's Q of a fix; unknown ones count as single.
+/// RTKLIB's Q of a fix; unknown quality counts as single.
 int quality_number(record::FixQuality quality) {
   return static_cast<int>(quality == record::FixQuality::kUnknown ? record::FixQuality::kSingle : quality);
 }

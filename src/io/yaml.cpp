@@ -23,7 +23,7 @@ constexpr std::size_t kMaxBytes = std::size_t{16} << 20;
 constexpr std::size_t kMaxDepth = 64;
 constexpr std::size_t kMaxNodes = 200'000;
 
-// Turns the parser's events into the tree. Events, not yaml-cpp's own nodes: those keep one of two equal keys in silence
+// Builds the tree from the parser's events. Events instead of yaml-cpp's own nodes: those silently keep one of two equal keys
 // and expand aliases without bound.
 class TreeHandler final : public YAML::EventHandler {
  public:
@@ -31,13 +31,13 @@ class TreeHandler final : public YAML::EventHandler {
 
   void OnDocumentStart(const YAML::Mark& mark) override {
     if (has_root_) refuse(mark, "a second document", "one document", "Put it into a file of its own.");
-    // At a stray ',' or ']' the parser gives empty documents for ever, without moving on.
+    // At a stray ',' or ']' the parser returns empty documents for ever, without advancing.
     if (++documents_ > 1) refuse(mark, "text that belongs to no key", "keys with values ('key: value')");
   }
   void OnDocumentEnd() override {}
 
   void OnNull(const YAML::Mark& mark, YAML::anchor_t) override {
-    if (open_.empty()) return;  // an empty document, or one of comments alone
+    if (open_.empty()) return;  // an empty document, or only comments
     if (awaits_key()) refuse(mark, "an empty key", "the name of a key");
     builder_.add_null(parent(mark), take_key(), line(mark));
   }
@@ -81,8 +81,8 @@ class TreeHandler final : public YAML::EventHandler {
   struct Level {
     config::TreeBuilder::Id id;
     bool is_map;
-    std::optional<std::string> key;             // read, and waiting for its value
-    std::map<std::string, long> lines_of_keys;  // for the message on a second one
+    std::optional<std::string> key;             // key waiting for its value
+    std::map<std::string, long> lines_of_keys;  // for the message on a duplicate
   };
 
   [[nodiscard]] static long line(const YAML::Mark& mark) { return mark.line + 1; }
@@ -142,7 +142,7 @@ void check_is_text(const std::string& text, const std::string& name) {
                     ""});
 }
 
-// The two mistakes whose message from yaml-cpp does not name them.
+// The two mistakes that yaml-cpp's message does not name.
 std::string hint(const std::string& text, long line) {
   std::istringstream lines(text);
   std::string current;
@@ -187,7 +187,7 @@ config::Node load_yaml(const std::filesystem::path& path) {
     throw InputError({path.string(), 0, "more than 16 MiB", "a configuration file", "Is this a recording?"});
   }
   text.resize(size);
-  // Some files of other kinds read as YAML, RINEX for one.
+  // Some files of other kinds can be parsed as YAML, for example RINEX.
   if (const auto kind = file_kind(std::string_view(text).substr(0, 4096)); kind && is_no_table(kind->content))
     refuse_other_kind(path, FileKind::Content::kYaml, "a configuration file");
   try {

@@ -11,11 +11,11 @@
 
 namespace coast::noise {
 
-/// A record that may still be short enough for full overlap is kept; a longer one lives in the pyramid.
+/// A record that may still be short enough for full overlap is kept; a longer one is held only in the pyramid.
 struct AllanAccumulator::Sums {
   std::vector<AveragingFactor> factors;
   std::uint64_t full_overlap_samples;
-  std::vector<double> kept;         ///< each run led by one 0, the place of its integral's first point
+  std::vector<double> kept;         ///< each run after one 0, the first point of its integral
   std::vector<std::size_t> starts;  ///< of the runs in `kept`
   bool in_run = false;
   std::optional<DifferencePyramid> pyramid;

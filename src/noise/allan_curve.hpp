@@ -1,5 +1,5 @@
 #pragma once
-// From sums to points, and the slope of a curve: shared by the estimator and the reading of coefficients.
+// Curve points from sums, and the slope of a curve: shared by the estimator and the reading of coefficients.
 
 #include <span>
 
@@ -8,11 +8,11 @@
 
 namespace coast::noise {
 
-/// @param full_overlap  a term started at every sample, else at every block of the factor's level
+/// @param full_overlap  a term starts at every sample, else at every block of the factor's level
 [[nodiscard]] AllanCurve make_curve(double interval, std::span<const AveragingFactor> factors,
                                     std::span<const DifferenceSums> sums, bool full_overlap);
 
-/// d log sigma / d log tau by least squares over the points within an octave to both sides; nothing where the point is alone.
+/// d log sigma / d log tau by least squares over the points within an octave to both sides; none if there is no other point.
 [[nodiscard]] std::optional<double> local_slope(const AllanCurve& curve, std::size_t at);
 
 }  // namespace coast::noise

@@ -9,11 +9,11 @@ namespace coast::noise {
 namespace {
 
 constexpr int kLevelBits = 6;               // at least 2^6 blocks per average: 64-fold overlap
-constexpr std::size_t kLanes = 4;           // independent sums, in a fixed order on every machine
-constexpr std::size_t kFreshPoints = 2048;  // differences are taken when so many have come: with history within the L1 cache
+constexpr std::size_t kLanes = 4;           // independent sums, in the same order on every machine
+constexpr std::size_t kFreshPoints = 2048;  // differences are computed for so many at once: with history within the L1 cache
 constexpr double kLongestAverage = 0x1p50;  // samples
 
-/// Sum of squares of the second differences that end at [begin, end).
+/// Sum of squares of the second differences that end in [begin, end).
 double second_differences(const double* x, std::size_t begin, std::size_t end, std::size_t k) {
   std::array<double, kLanes> sum{};
   const auto square = [x, k](std::size_t i) {
@@ -32,7 +32,7 @@ struct BothSums {
   double third;
 };
 
-/// Second and third differences in one pass: the points are the same.
+/// Second and third differences in one pass: they use the same points.
 BothSums both_differences(const double* x, std::size_t begin, std::size_t end, std::size_t k) {
   std::array<double, kLanes> second{};
   std::array<double, kLanes> third{};
@@ -62,7 +62,7 @@ void add_differences(std::span<const double> x, std::size_t fresh, std::size_t k
   sums.third += both.third;
   sums.second_terms += x.size() - second_begin;
   sums.third_terms += x.size() - third_begin;
-  // The first term of a run ends at 2k, 3k points after its start, where fresh points have not yet begun to replace history.
+  // The first term of a run ends 2k, 3k points after its start, when fresh points have not yet replaced history.
   if (second_begin == 2 * k) ++sums.second_runs;
   if (third_begin == 3 * k && third_begin < x.size()) ++sums.third_runs;
 }
@@ -99,7 +99,7 @@ void DifferenceLevel::add(std::span<const double> sums, std::vector<double>& pai
 void DifferenceLevel::take_differences() {
   for (std::size_t j = 0; j < lags_.size(); ++j) add_differences(x_, fresh_, lags_[j], sums_[j]);
   if (x_.size() > history_) x_.erase(x_.begin(), x_.end() - static_cast<std::ptrdiff_t>(history_));
-  // Differences do not see a constant; taken off, the integral of a long record never grows large.
+  // Differences do not depend on a constant; it is subtracted so that the integral of a long record never grows large.
   const double last = x_.back();
   for (double& x : x_) x -= last;
   fresh_ = x_.size();

@@ -1,5 +1,5 @@
 #pragma once
-// Sums of squared second and third differences of the integrated signal, and the pyramid of block sums they are taken from.
+// Sums of squared second and third differences of the integrated signal, and the pyramid of block sums they are computed from.
 
 #include <cstddef>
 #include <cstdint>
@@ -8,21 +8,21 @@
 
 namespace coast::noise {
 
-/// What has been summed up at one averaging factor.
+/// Sums at one averaging factor.
 struct DifferenceSums {
   double second = 0.0;  ///< of (x[i] - 2 x[i-k] + x[i-2k])^2
   double third = 0.0;   ///< of (x[i] - 3 x[i-k] + 3 x[i-2k] - x[i-3k])^2
   std::uint64_t second_terms = 0;
   std::uint64_t third_terms = 0;
-  std::uint64_t second_runs = 0;  ///< runs that had a term
+  std::uint64_t second_runs = 0;  ///< number of runs with at least one term
   std::uint64_t third_runs = 0;
 };
 
 /// Adds the terms whose last point is at `fresh` or later. x: the integrated signal of one run; points before `fresh` were
-/// there before. @param k lag in points, >= 1
+/// processed before. @param k lag in points, >= 1
 void add_differences(std::span<const double> x, std::size_t fresh, std::size_t k, DifferenceSums& sums);
 
-/// Averaging factors of all records: about equally spaced in the logarithm, rounded to 7 significant bits.
+/// Averaging factors of all records: about equally spaced in logarithm, rounded to 7 significant bits.
 struct AveragingFactor {
   int level;      ///< blocks of 2^level samples; 0 below 128 samples
   std::size_t k;  ///< blocks per average, 64 to 127 above level 0
@@ -30,11 +30,11 @@ struct AveragingFactor {
 };
 [[nodiscard]] std::vector<AveragingFactor> averaging_factors(int points_per_decade);
 
-/// One level of the pyramid: integrates blocks, keeps three of its longest averages, takes differences as blocks come.
+/// One level of the pyramid: integrates blocks, keeps three times its longest average, adds differences as blocks arrive.
 class DifferenceLevel {
  public:
   explicit DifferenceLevel(std::vector<std::size_t> lags);
-  /// The next blocks' sums. Sums of two are left in `pairs` for the next level.
+  /// The next blocks' sums. Sums of two blocks are left in `pairs` for the next level.
   void add(std::span<const double> sums, std::vector<double>& pairs);
   void end_run();
   [[nodiscard]] const std::vector<std::size_t>& lags() const { return lags_; }
@@ -45,20 +45,20 @@ class DifferenceLevel {
 
   std::vector<std::size_t> lags_;
   std::vector<DifferenceSums> sums_;
-  std::size_t history_;    ///< points that the longest difference reaches back
+  std::size_t history_;    ///< number of earlier points that the longest difference needs
   std::vector<double> x_;  ///< the integral, from some point on: history, then fresh points
-  std::size_t fresh_ = 0;  ///< first point not yet at the end of a difference
+  std::size_t fresh_ = 0;  ///< first point that was not yet the end of a difference
   bool odd_ = false;       ///< a block waits for its partner
   double waiting_ = 0.0;
 };
 
-/// All levels. Levels come into being as the record grows.
+/// All levels. Levels are added as the record grows.
 class DifferencePyramid {
  public:
   explicit DifferencePyramid(std::vector<AveragingFactor> factors) : factors_(std::move(factors)) {}
   void add(std::span<const double> samples);
   void end_run();
-  /// The sums of each factor, in the order given; zero where no level was reached.
+  /// The sums of each factor, in the given order; zero if its level was not reached.
   [[nodiscard]] std::vector<DifferenceSums> sums() const;
 
  private:

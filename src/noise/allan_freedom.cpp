@@ -15,7 +15,7 @@ constexpr double kLagsPerAverage = 256.0;  // beyond this the sum over lags is a
 constexpr double kLongestLag = 6.0;        // averages; the autocorrelation squared of flicker noise falls with lag^-4
 
 /// Generalised autocovariance of the integral of power-law noise (Greenhall & Riley 2003, table 1), lag in averages; a factor
-/// does not matter. The integral of quantisation noise is white and dealt with by itself.
+/// is irrelevant. The integral of quantisation noise is white and treated separately.
 double integral_covariance(NoiseType noise, int order, double lag) {
   const double t = std::abs(lag);
   switch (noise) {
@@ -25,7 +25,7 @@ double integral_covariance(NoiseType noise, int order, double lag) {
     case NoiseType::kFlicker:
       return t > 0.0 ? t * t * std::log(t) : 0.0;
     case NoiseType::kRamp:
-      // The Allan variance of f^-4 noise does not exist; its terms are taken for a random walk's.
+      // The Allan variance of f^-4 noise does not exist; its terms are approximated by a random walk's.
       if (order == 3) return -t * t * t * t * t;
       [[fallthrough]];
     case NoiseType::kRandomWalk:
@@ -46,7 +46,7 @@ double difference_covariance(NoiseType noise, int order, double lag) {
   return sum;
 }
 
-/// Of quantisation noise only terms a whole number of averages apart are correlated: binomial coefficients.
+/// For quantisation noise only terms an integer number of averages apart are correlated: binomial coefficients.
 double quantisation_sum(const DifferencePlan& plan, double terms) {
   static constexpr std::array<double, 2> second{-4.0 / 6.0, 1.0 / 6.0};
   static constexpr std::array<double, 3> third{-15.0 / 20.0, 6.0 / 20.0, -1.0 / 20.0};

@@ -1,4 +1,4 @@
-// The classical coefficients, as people read them from the slopes of a curve.
+// The classical coefficients, read from the slopes of a curve.
 
 #include <algorithm>
 #include <cmath>
@@ -40,7 +40,7 @@ Stretch longest_stretch(const AllanCurve& curve, double nominal) {
   return longest;
 }
 
-/// Least-squares slope over a stretch, all points alike.
+/// Least-squares slope over a stretch, all points with equal weight.
 double slope_of(const AllanCurve& curve, const Stretch& stretch) {
   double mean_x = 0.0;
   double mean_y = 0.0;
@@ -59,7 +59,7 @@ double slope_of(const AllanCurve& curve, const Stretch& stretch) {
   return xy / xx;
 }
 
-/// The interval of the stretch's value is that of its best point, moved to the value.
+/// The interval of the stretch's value is that of its best point, scaled to the value.
 void scale_intervals(CoefficientReading& reading, const Deviation& best) {
   const double ratio = reading.value / best.value;
   reading.interval_68 = {best.interval_68.lower * ratio, best.interval_68.upper * ratio};

@@ -80,7 +80,7 @@ double ArmaGarch::unconditional_variance() const {
     const auto squares = std::inner_product(beta.begin(), beta.end(), beta.begin(), 1.0);
     return innovation_variance() * squares;
   }
-  // State (x[t], ..., x[t-r+1]) of the autoregression u that beta averages: y = u[t] + beta_1 u[t-1] + ...
+  // State (x[t], ..., x[t-r+1]) of the autoregression u, of which y is the moving average: y = u[t] + beta_1 u[t-1] + ...
   const std::size_t states = std::max(alpha.size(), beta.size() + 1);
   VectorXd padded = VectorXd::Zero(static_cast<Index>(states));
   std::ranges::copy(alpha, padded.begin());

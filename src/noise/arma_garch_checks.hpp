@@ -1,11 +1,11 @@
 #pragma once
-// What arguments of the ARMA-GARCH functions have to be. Private to the room.
+// Checks of the arguments of the ARMA-GARCH functions. Private to the room.
 
 #include "coast/noise/arma_garch.hpp"
 
 namespace coast::noise {
 
-/// @throws std::invalid_argument  naming what is wrong
+/// @throws std::invalid_argument  with the defect
 void check_arma_garch(const ArmaGarchOrders& orders);
 void check_arma_garch(const ArmaGarch& model);
 void check_arma_garch(const ArmaGarchSeries& series, const ArmaGarchOrders& orders);

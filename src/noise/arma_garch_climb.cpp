@@ -13,7 +13,7 @@ namespace {
 
 constexpr double kPromise = 1e-10;  // of log-likelihood: 1.4e-5 standard deviations; its rounding is near 1e-11
 
-/// A point with what the quadratic model about it needs.
+/// A point with the data of the quadratic model about it.
 struct ClimbPoint {
   VectorXd u;
   double value = 0.0;
@@ -27,7 +27,7 @@ ClimbPoint climb_point_at(ArmaGarchRecursion& recursion, const ArmaGarchCoordina
   return {u, at.value, J.transpose() * at.gradient, J.transpose() * at.expected * J};
 }
 
-/// Coordinates that are pressed against an end of the box, or whose range is a point, are taken out of the model.
+/// Coordinates at an end of the box with an outward gradient, or with lower = upper, are removed from the model.
 void hold_at_ends(ClimbPoint& at, const std::vector<Interval>& box) {
   for (Index i = 0; i < at.u.size(); ++i) {
     const Interval& range = box[static_cast<std::size_t>(i)];
@@ -40,7 +40,7 @@ void hold_at_ends(ClimbPoint& at, const std::vector<Interval>& box) {
   }
 }
 
-/// (I + damping diag I)^-1 gradient, of at most `kLongest` in a coordinate and inside the box.
+/// (I + damping diag I)^-1 gradient, at most `kLongest` per coordinate and inside the box.
 VectorXd damped_step(const ClimbPoint& at, double damping, const std::vector<Interval>& box) {
   constexpr double kLongest = 3.0;
   constexpr double kFlat = 1e-12;

@@ -17,7 +17,7 @@ double logistic(double u) {
   return 1.0 / (1.0 + std::exp(-u));
 }
 
-/// atanh of the partial autocorrelations of coefficients that are damped, root by root alike, until there are some.
+/// atanh of the partial autocorrelations of coefficients, whose roots are equally damped until the autocorrelations exist.
 VectorXd unbounded_partials(VectorXd a) {
   constexpr double kDamped = 0.98;
   constexpr double kMostTanh = 0.9999;
@@ -65,7 +65,7 @@ VectorXd ArmaGarchCoordinates::centred(const VectorXd& u) const {
   const Index at = layout_.gamma0();
   c(at) = std::exp(u(at));
   if (moving() == 0) return c;
-  c(at) *= logistic(-u(at + 1));  // 1 - persistence, with its digits
+  c(at) *= logistic(-u(at + 1));  // 1 - persistence, without loss of digits
   c.segment(at + 1, moving()) = logistic(u(at + 1)) * shares(u);
   return c;
 }

@@ -8,7 +8,7 @@
 
 namespace coast::noise {
 
-/// Coefficients of partial autocorrelations, stationary for any inside (-1, 1), and their derivatives: Monahan (1984), by
+/// Coefficients from partial autocorrelations, stationary for any inside (-1, 1), and their derivatives: Monahan (1984), by
 /// Levinson & Durbin's recursion.
 struct ArCoefficients {
   Eigen::VectorXd a;
@@ -17,7 +17,7 @@ struct ArCoefficients {
 [[nodiscard]] ArCoefficients ar_from_partial(const Eigen::VectorXd& partial);
 
 /// u = [mu, atanh of partial autocorrelations of alpha, of -beta, log s2, logit of the persistence, log of the shares of gamma
-/// and delta in it against the last one's], s2 the variance of e: of a series about its mean, in units of its deviation.
+/// and delta in it relative to the last one], s2 the variance of e: for a series about its mean, in units of its deviation.
 class ArmaGarchCoordinates {
  public:
   ArmaGarchCoordinates(const ArmaGarchOrders& orders, bool constant) : layout_(orders), constant_(constant) {}
@@ -25,7 +25,7 @@ class ArmaGarchCoordinates {
   [[nodiscard]] const ArmaGarchLayout& layout() const { return layout_; }
   [[nodiscard]] Eigen::VectorXd centred(const Eigen::VectorXd& u) const;
   [[nodiscard]] Eigen::MatrixXd centred_by_u(const Eigen::VectorXd& u) const;
-  /// The way back, from wherever: what is not stationary or not invertible is damped until it is.
+  /// The inverse, from any point: coefficients that are not stationary or not invertible are damped until they are.
   [[nodiscard]] Eigen::VectorXd inside(const Eigen::VectorXd& centred) const;
   [[nodiscard]] std::vector<Interval> box() const;
 

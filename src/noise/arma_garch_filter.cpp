@@ -11,7 +11,7 @@ namespace coast::noise {
 
 namespace {
 
-/// The newest in front, the oldest out.
+/// The newest first, the oldest last.
 void push_newest(std::vector<double>& lags, double value) {
   if (lags.empty()) return;
   std::copy_backward(lags.begin(), lags.end() - 1, lags.end());

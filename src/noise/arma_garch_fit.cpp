@@ -14,7 +14,7 @@ using Eigen::VectorXd;
 
 namespace {
 
-/// About its mean and in units of its deviation: tolerances and boxes then need no unit.
+/// About its mean and in units of its deviation: tolerances and boxes are then without unit.
 struct ScaledArmaSeries {
   std::vector<double> y;
   double mean = 0.0;
@@ -41,7 +41,7 @@ ScaledArmaSeries scaled_series(const ArmaGarchSeries& series, bool constant) {
   return scaled;
 }
 
-/// The stretch that the starts are followed on: the first samples until enough of them are seen.
+/// The part of the series used to compare starts: the first samples until enough of them are observed.
 ArmaGarchSeries beginning(const ArmaGarchSeries& series) {
   constexpr std::size_t kEnough = 3000;
   std::size_t seen = 0;
@@ -64,9 +64,9 @@ SearchResult explore(ArmaGarchRecursion& recursion, const ArmaGarchCoordinates& 
                        });
 }
 
-/// Where the starts lead on the beginning, best first: one, or two that may change places on all of the series.
+/// Optima on the beginning from the starts, best first: one, or two if their order may change on the full series.
 std::vector<VectorXd> promising(const ArmaGarchSeries& series, const ArmaGarchOrders& orders, const ArmaGarchOptions& options) {
-  constexpr double kDecided = 20.0;  // of log-likelihood on the beginning: the worse will not win on all of it
+  constexpr double kDecided = 20.0;  // of log-likelihood on the beginning: the worse one will not win on the full series
   constexpr double kSameTop = 0.01;
   const ArmaGarchCoordinates coordinates(orders, options.constant);
   ArmaGarchRecursion recursion(orders, series, options.start);

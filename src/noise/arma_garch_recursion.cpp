@@ -65,7 +65,7 @@ void ArmaGarchRecursion::run_mean(const VectorXd& centred) {
   for (Index t = 0; t < n_; ++t) {
     double prediction = 0.0;
     for (Index i = 0; i < layout_.ar; ++i) prediction += alpha[i] * x[t - 1 - i];
-    // The newest residual last: the processor waits for it, and for nothing else.
+    // The newest residual last: it is the only one the processor has to wait for.
     for (Index j = layout_.ma - 1; j >= 0; --j) prediction += beta[j] * e[t - 1 - j];
     const bool is_seen = is_missing_[static_cast<std::size_t>(t)] == 0;
     x[t] = is_seen ? y_(t) - centred(0) : prediction;
@@ -102,7 +102,7 @@ double ArmaGarchRecursion::value(const VectorXd& centred) {
   return -0.5 * (constant + (counted_ * (h.log() + e.square() / h)).sum());
 }
 
-/// @return the adjoint of the mean square that stands before the first sample
+/// @return the adjoint of the mean square before the first sample
 double ArmaGarchRecursion::run_variance_back(const VectorXd& centred, VectorXd& gradient) {
   const double* gamma = centred.data() + layout_.gamma();
   const double* delta = centred.data() + layout_.delta();

@@ -9,8 +9,8 @@
 
 namespace coast::noise {
 
-/// Where things are in a centred parameter vector [mu, alpha, beta, gamma0, gamma, delta]: mu is the mean of y, whose estimate
-/// is next to independent of alpha, as nu = mu (1 - sum alpha) is not.
+/// Positions in a centred parameter vector [mu, alpha, beta, gamma0, gamma, delta]: mu is the mean of y, whose estimate is
+/// almost independent of alpha, unlike nu = mu (1 - sum alpha).
 struct ArmaGarchLayout {
   explicit ArmaGarchLayout(const ArmaGarchOrders& orders)
       : ar(orders.ar), ma(orders.ma), arch(orders.arch), garch(orders.garch) {}
@@ -20,7 +20,7 @@ struct ArmaGarchLayout {
   Eigen::Index garch;
   [[nodiscard]] Eigen::Index alpha() const { return 1; }
   [[nodiscard]] Eigen::Index beta() const { return 1 + ar; }
-  [[nodiscard]] Eigen::Index gamma0() const { return 1 + ar + ma; }  ///< also how many parameters act on residuals
+  [[nodiscard]] Eigen::Index gamma0() const { return 1 + ar + ma; }  ///< also the number of parameters that act on residuals
   [[nodiscard]] Eigen::Index gamma() const { return gamma0() + 1; }
   [[nodiscard]] Eigen::Index delta() const { return gamma() + arch; }
   [[nodiscard]] Eigen::Index size() const { return delta() + garch; }
@@ -28,7 +28,7 @@ struct ArmaGarchLayout {
 
 [[nodiscard]] Eigen::VectorXd centred_vector(const ArmaGarch& model);
 [[nodiscard]] ArmaGarch model_of_centred(const ArmaGarchLayout& layout, const Eigen::VectorXd& centred);
-/// d natural/d centred; the first row and column (nu by mu) are there also where nu is fixed.
+/// d natural/d centred; the first row and column (nu by mu) are present even if nu is fixed.
 [[nodiscard]] Eigen::MatrixXd natural_by_centred(const ArmaGarchLayout& layout, const Eigen::VectorXd& centred);
 
 /// Log-likelihood of one series, O(n (d + h + p + q)) with its gradient. Buffers are kept between calls.
@@ -37,10 +37,10 @@ class ArmaGarchRecursion {
   ArmaGarchRecursion(const ArmaGarchOrders& orders, const ArmaGarchSeries& series, ArmaGarchStart start);
 
   [[nodiscard]] double value(const Eigen::VectorXd& centred);
-  /// By the adjoint recursions: the variance's backwards, then the mean's.
+  /// By the adjoint recursions: first the variance's backwards, then the mean's.
   double slope(const Eigen::VectorXd& centred, Eigen::VectorXd& gradient);
 
-  /// Sensitivities of every sample, run forwards.
+  /// Sensitivities of every sample, by forward recursion.
   struct Information {
     double value = 0.0;
     Eigen::VectorXd gradient;
@@ -51,7 +51,7 @@ class ArmaGarchRecursion {
 
   [[nodiscard]] const ArmaGarchLayout& layout() const { return layout_; }
   [[nodiscard]] std::size_t observations() const { return observations_; }
-  /// Of the last call.
+  /// From the last call.
   [[nodiscard]] std::span<const double> residuals() const { return after_lags(residual_); }
   [[nodiscard]] std::span<const double> variances() const { return after_lags(variance_); }
 
@@ -69,23 +69,23 @@ class ArmaGarchRecursion {
   ArmaGarchLayout layout_;
   Eigen::Index n_;
   Eigen::Index lags_;             ///< samples of padding before (and, for adjoints, after) the series
-  Eigen::Index held_residuals_;   ///< first residuals that are 0 whatever the parameters
-  Eigen::Index held_variances_;   ///< first variances that are gamma0 + persistence times the mean square
-  std::size_t observations_ = 0;  ///< samples that count
+  Eigen::Index held_residuals_;   ///< number of first residuals that are 0 for all parameters
+  Eigen::Index held_variances_;   ///< number of first variances that are gamma0 + persistence times the mean square
+  std::size_t observations_ = 0;  ///< number of samples that count
   Eigen::VectorXd y_;
   std::vector<std::uint8_t> is_missing_;
-  Eigen::ArrayXd counted_;  ///< 1; 0 where missing, and where a gap is not yet forgotten
+  Eigen::ArrayXd counted_;  ///< 1; 0 if missing, or while the effect of a gap has not decayed
   double mean_square_ = 0.0;
-  // Padded by lags_ in front:
+  // Padded by lags_ at the front:
   std::vector<double> x_;         ///< y - mu, or its prediction
   std::vector<double> residual_;  ///< e
   std::vector<double> square_;    ///< e^2, or its expectation
   std::vector<double> variance_;  ///< s2
-  // Adjoints, padded by lags_ behind:
+  // Adjoints, padded by lags_ at the end:
   std::vector<double> variance_bar_;
   std::vector<double> row_bar_;  ///< of the equation of each sample's mean
   std::vector<double> residual_bar_;
-  // Sensitivities, a column per sample, padded in front:
+  // Sensitivities, one column per sample, padded at the front:
   Eigen::MatrixXd x_by_;
   Eigen::MatrixXd residual_by_;
   Eigen::MatrixXd square_by_;

@@ -12,7 +12,7 @@ using Eigen::VectorXd;
 
 namespace {
 
-/// to += factor * from, of a few numbers: Eigen's dynamic columns cost more than the sum itself.
+/// to += factor * from, of a few numbers: Eigen's dynamic columns cost more than the operation itself.
 inline void add_column(double* to, double factor, const double* from, Index count) {
   for (Index k = 0; k < count; ++k) to[k] += factor * from[k];
 }
@@ -32,7 +32,7 @@ void ArmaGarchRecursion::run_mean_sensitivity(const VectorXd& centred) {
   for (Index t = 0; t < n_; ++t) {  // row: of the prediction
     std::fill(row.begin(), row.end(), 0.0);
     for (Index i = 0; i < layout_.ar; ++i) {
-      // Without gaps x depends on mu alone.
+      // Without gaps x depends only on mu.
       add_column(row.data(), centred(layout_.alpha() + i), x_by(t - 1 - i), has_gaps ? k : 1);
       row[static_cast<std::size_t>(layout_.alpha() + i)] += x[t - 1 - i];
     }

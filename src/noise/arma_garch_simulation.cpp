@@ -8,7 +8,7 @@ namespace coast::noise {
 
 namespace {
 
-/// Samples after which less than 1e-13 of a start is left, by the slowest root of mean and variance.
+/// Samples after which the effect of a start is below 1e-13, by the slowest root of mean and variance.
 std::size_t samples_to_forget(const ArmaGarch& model) {
   constexpr double kDecades = 30.0;  // exp(-30) = 1e-13
   constexpr double kMost = 1e6;

@@ -13,8 +13,8 @@ using Eigen::VectorXd;
 
 namespace {
 
-/// With 0 where a sample is missing: its autocovariances are then still those of some series, so that what Yule & Walker make
-/// of them is stationary.
+/// With 0 for missing samples: its autocovariances are then still those of some series, so that the Yule & Walker solution is
+/// stationary.
 VectorXd filled_series(const ArmaGarchSeries& series) {
   VectorXd x = Eigen::Map<const VectorXd>(series.y.data(), std::ssize(series.y));
   for (std::size_t t = 0; t < series.is_missing.size(); ++t)
@@ -31,7 +31,7 @@ VectorXd yule_walker(const VectorXd& x, Index order) {
   return R.ldlt().solve(r.tail(order));
 }
 
-/// Residuals of a long autoregression stand for e; then least squares on the lags of both.
+/// Residuals of a long autoregression replace e; then least squares on the lags of both.
 VectorXd hannan_rissanen(const VectorXd& x, Index ar, Index ma) {
   const Index n = x.size();
   const Index order = std::min<Index>(20 + ar + ma, n / 5);

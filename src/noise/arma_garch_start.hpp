@@ -1,5 +1,5 @@
 #pragma once
-// Where the search for an ARMA-GARCH maximum begins. Private to the room.
+// Start values for the search for an ARMA-GARCH maximum. Private to the room.
 
 #include <vector>
 
@@ -8,7 +8,7 @@
 namespace coast::noise {
 
 /// Starts u for a series of mean 0 and deviation 1: by Hannan & Rissanen (1982), by Yule & Walker without moving average, and a
-/// slow autoregression under white noise, the common shape of inertial sensors; each with the best of three GARCH guesses.
+/// slow autoregression plus white noise, as is common for inertial sensors; each with the best of three GARCH guesses.
 [[nodiscard]] std::vector<Eigen::VectorXd> arma_garch_starts(const ArmaGarchSeries& series, const ArmaGarchOrders& orders,
                                                              ArmaGarchRecursion& recursion,
                                                              const ArmaGarchCoordinates& coordinates);

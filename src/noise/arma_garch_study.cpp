@@ -17,7 +17,7 @@ namespace {
 
 struct ArmaGarchRun {
   VectorXd estimate;
-  VectorXd se;  ///< empty where there is none
+  VectorXd se;  ///< empty if there is none
   std::vector<bool> is_inside;
   bool converged = false;
   double seconds = 0.0;
@@ -60,7 +60,7 @@ ArmaGarchParameterSummary parameter_summary(const std::vector<ArmaGarchRun>& run
   }
   double squares = 0.0;
   for (const ArmaGarchRun& run : runs) squares += (run.estimate(at) - mean) * (run.estimate(at) - mean);
-  summary.bias = mean;  // the truth is taken off by the caller
+  summary.bias = mean;  // the truth is subtracted by the caller
   summary.sd = runs.size() > 1 ? std::sqrt(squares / (count - 1.0)) : 0.0;
   if (stated > 0.0) summary.mean_se /= stated;
   summary.coverage = static_cast<double>(summary.inside) / count;

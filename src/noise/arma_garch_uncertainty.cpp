@@ -13,8 +13,8 @@ using Eigen::VectorXd;
 
 namespace {
 
-/// Minus the second derivatives, by central differences of the gradient over a small part of what each parameter is known to:
-/// the remainder is 1e-6 of the curvature's change over a standard deviation, and the gradient's rounding 1e-8 of it.
+/// Minus the second derivatives, by central differences of the gradient over a small fraction of each parameter's deviation:
+/// the truncation error is 1e-6 of the curvature's change over a standard deviation, the error by rounding 1e-8 of it.
 MatrixXd observed_information(ArmaGarchRecursion& recursion, const VectorXd& centred, const MatrixXd& expected) {
   constexpr double kPart = 3e-3;
   MatrixXd A(centred.size(), centred.size());
@@ -32,12 +32,12 @@ MatrixXd observed_information(ArmaGarchRecursion& recursion, const VectorXd& cen
   return 0.5 * (A + A.transpose());
 }
 
-/// Nothing where A is not positive definite, seen in units in which its diagonal is 1.
+/// None if A is not positive definite, after scaling to a unit diagonal.
 std::optional<MatrixXd> inverse_of_definite(const MatrixXd& A) {
   if (!(A.diagonal().minCoeff() > 0.0)) return {};
   const VectorXd scale = A.diagonal().cwiseSqrt().cwiseInverse();
   const Eigen::LDLT<MatrixXd> factor(scale.asDiagonal() * A * scale.asDiagonal());
-  constexpr double kSingular = 1e-10;  // differences of the gradient leave 1e-8 of errors, which cancel in part
+  constexpr double kSingular = 1e-10;  // differences of the gradient have errors of 1e-8, which cancel in part
   if (!(factor.vectorD().minCoeff() > kSingular)) return {};
   return MatrixXd(scale.asDiagonal() * factor.solve(MatrixXd::Identity(A.rows(), A.rows())) * scale.asDiagonal());
 }
@@ -61,7 +61,7 @@ std::optional<ArmaGarchUncertainty> arma_garch_uncertainty(const ArmaGarchFit& f
   if (!inverse) return {};
   const MatrixXd used = scores.rightCols(free);
   const MatrixXd J = natural_by_centred(recursion.layout(), centred).bottomRightCorner(free, free);
-  // At the maximum the gradient is zero, so that second derivatives change with the parameters as a tensor does.
+  // At the maximum the gradient is zero, so that second derivatives transform as a tensor.
   const MatrixXd curvature = J * *inverse * J.transpose();
   const MatrixXd side = J * *inverse * used.transpose();
   return ArmaGarchUncertainty{side * side.transpose(), curvature};

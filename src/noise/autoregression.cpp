@@ -23,7 +23,7 @@ Eigen::MatrixXd companion_of(const Eigen::VectorXd& coefficients) {
   return A;
 }
 
-// What `first` and then `second` do.
+// `first` followed by `second`.
 Autoregression::Steps then(const Autoregression::Steps& first, const Autoregression::Steps& second) {
   Autoregression::Steps both;
   both.Phi = second.Phi * first.Phi;
@@ -32,6 +32,10 @@ Autoregression::Steps then(const Autoregression::Steps& first, const Autoregress
   both.cov_en = second.Phi * (first.cov_en + first.var_e * second.T.transpose()) + second.cov_en;
   both.var_n = first.var_n + 2.0L * second.T.dot(first.cov_en) + second.T * first.var_e * second.T.transpose() + second.var_n;
   return both;
+}
+
+Autoregression::Steps nothing(Eigen::Index p) {
+  return {Matrix::Identity(p, p), Row::Zero(p), Matrix::Zero(p, p), Autoregression::Column::Zero(p), 0.0L};
 }
 
 long double form(const Row& a, const Matrix& M) {
@@ -49,7 +53,7 @@ double Autoregression::largest_pole(const Eigen::VectorXd& coefficients) {
 }
 
 Autoregression::Autoregression(const Eigen::VectorXd& coefficients, double innovation_variance)
-    : A_(companion_of(coefficients).cast<long double>()), innovation_variance_(innovation_variance) {
+    : A_(companion_of(coefficients).cast<long double>()) {
   // P = sum A^k b b' A'^k, doubled until the rest has decayed.
   const Eigen::Index p = A_.rows();
   P_ = Matrix::Zero(p, p);
@@ -60,15 +64,23 @@ Autoregression::Autoregression(const Eigen::VectorXd& coefficients, double innov
     power = (power * power).eval();
   }
   P_ = (0.5L * (P_ + P_.transpose())).eval();
+  constexpr std::size_t kPowers = 16;  // a curve asks for the effect of many numbers of steps
+  Steps once = nothing(p);
+  once.Phi = A_;
+  once.T(0) = 1.0L;  // a value is summed before the step
+  once.var_e(0, 0) = innovation_variance;
+  powers_.push_back(once);
+  while (powers_.size() < kPowers) powers_.push_back(then(powers_.back(), powers_.back()));
 }
 
 Autoregression::Steps Autoregression::steps(std::uint64_t m) const {
-  const Eigen::Index p = order();
-  Steps result{Matrix::Identity(p, p), Row::Zero(p), Matrix::Zero(p, p), Column::Zero(p), 0.0L};
-  Steps power = result;  // of one step, two, four, ...
-  power.Phi = A_;
-  power.T(0) = 1.0L;  // a value counts before it is stepped
-  power.var_e(0, 0) = innovation_variance_;
+  Steps result = nothing(order());
+  for (const Steps& power : powers_) {
+    if (m & 1U) result = then(result, power);
+    m >>= 1U;
+  }
+  if (m == 0) return result;
+  Steps power = then(powers_.back(), powers_.back());
   for (; m > 0; m >>= 1U) {
     if (m & 1U) result = then(result, power);
     if (m > 1) power = then(power, power);
@@ -76,7 +88,7 @@ Autoregression::Steps Autoregression::steps(std::uint64_t m) const {
   return result;
 }
 
-// Second sum minus first, in terms of the state before both and of what came in during each.
+// Second sum minus first, as function of the state before both and of the innovations during each.
 double Autoregression::allan_variance(std::uint64_t m) const {
   const Steps s = steps(m);
   const Matrix change = s.Phi - Matrix::Identity(order(), order());
@@ -97,7 +109,7 @@ double Autoregression::hadamard_variance(std::uint64_t m) const {
 
 namespace {
 
-// Zeros of z^p - a[0] z^(p-1) - ... - a[p-1], polished by Newton; real ones exactly so, of a pair the upper one alone.
+// Zeros of z^p - a[0] z^(p-1) - ... - a[p-1], refined by Newton; real ones exactly real, of a pair only the upper one.
 std::vector<LongComplex> poles_of(const Eigen::VectorXd& coefficients) {
   std::vector<LongComplex> poles;
   for (const Complex& start : companion_of(coefficients).eigenvalues()) {
@@ -136,7 +148,7 @@ std::vector<LongComplex> shares_of(const std::vector<LongComplex>& poles, double
 }
 
 // The zeros in the left half-plane of the spectrum's numerator, sum_i -2 mu_i c_i prod_{j != i} (mu_j^2 - q), q = (i omega)^2;
-// nothing where it is negative for some omega.
+// none if it is negative for some omega.
 std::optional<std::vector<Complex>> spectral_zeros(const std::vector<LongComplex>& mu, const std::vector<LongComplex>& c) {
   const std::size_t p = mu.size();
   std::vector<LongComplex> numerator(p, 0.0L);
@@ -164,7 +176,7 @@ std::optional<std::vector<Complex>> spectral_zeros(const std::vector<LongComplex
   return zeros;
 }
 
-// exp(z) - 1 with the digits of a small z.
+// exp(z) - 1 without loss of digits for a small z.
 Complex expm1(const Complex& z) {
   const double half = std::sin(0.5 * z.imag());
   return {std::expm1(z.real()) * std::cos(z.imag()) - 2.0 * half * half, std::exp(z.real()) * std::sin(z.imag())};
@@ -217,7 +229,7 @@ std::optional<ContinuousForm> ContinuousForm::of(const Eigen::VectorXd& coeffici
   return result;
 }
 
-// Of the factorisation nothing is believed: its autocovariance is compared with that of the series.
+// The factorisation is checked: its autocovariance is compared with that of the series.
 bool ContinuousForm::agrees_with(const Autoregression& series) const {
   constexpr double kTolerance = 1e-9;  // of the variance
   const Eigen::Index p = series.order();

@@ -1,8 +1,6 @@
 #include "calibration_checks.hpp"
 
 #include <fmt/format.h>
-#include <tbb/parallel_for.h>
-
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
@@ -15,9 +13,9 @@ namespace coast::noise {
 
 namespace {
 
-constexpr double kQuarter = 0.25;  // "known": a standard deviation of a quarter
+constexpr double kQuarter = 0.25;  // "known": a relative standard deviation of a quarter
 
-/// Seconds of a grid index's sample.
+/// Times of the samples, s.
 std::vector<double> times_of(const StaticSignal& signal) {
   std::vector<double> times;
   times.reserve(signal.values.size());
@@ -26,7 +24,7 @@ std::vector<double> times_of(const StaticSignal& signal) {
   return times;
 }
 
-/// x with P(|z| > x) = p of a standard normal.
+/// x with P(|z| > x) = p for standard normal z.
 double normal_bound(double p) {
   return std::sqrt(chi2_upper_quantile(1.0, p));
 }
@@ -75,49 +73,6 @@ std::vector<Outlier> outliers_of(const Likelihood& likelihood, const std::vector
   return outliers;
 }
 
-// The band: pointwise quantiles would be left somewhere by most realisations; the largest standardised departure over all
-// averaging times has one quantile that 95 % of the realisations keep to everywhere.
-CurveBand band_of(const AllanCurve& curve, const SumModel& model, const std::vector<double>& u, const StaticSignal& signal,
-                  double slope, const CalibrationOptions& options) {
-  CurveBand band;
-  const auto count = static_cast<std::size_t>(options.realisations);
-  if (count < 20) return band;
-  const std::size_t points = curve.size();
-  std::vector<std::vector<double>> logs(count, std::vector<double>(points));
-  tbb::parallel_for(std::size_t{0}, count, [&](std::size_t i) {
-    StaticSignal drawn = realisation(model, u, signal.interval, signal.length(), options.seed + 1 + i);
-    for (std::size_t k = 0; k < drawn.values.size(); ++k) drawn.values[k] += slope * static_cast<double>(k) * signal.interval;
-    const AllanCurve there = allan_curve(drawn);
-    std::size_t at = 0;
-    for (std::size_t p = 0; p < points; ++p) {
-      while (at + 1 < there.size() && there[at].factor < curve[p].factor) ++at;
-      logs[i][p] = std::log(there[at].allan.value);
-    }
-  });
-  std::vector<double> mean(points, 0.0);
-  std::vector<double> sd(points, 0.0);
-  const auto n = static_cast<double>(count);
-  for (std::size_t p = 0; p < points; ++p) {
-    for (const auto& one : logs) mean[p] += one[p] / n;
-    for (const auto& one : logs) sd[p] += (one[p] - mean[p]) * (one[p] - mean[p]) / (n - 1.0);
-    sd[p] = std::sqrt(sd[p]);
-  }
-  std::vector<double> largest(count, 0.0);
-  for (std::size_t i = 0; i < count; ++i)
-    for (std::size_t p = 0; p < points; ++p) largest[i] = std::max(largest[i], std::abs(logs[i][p] - mean[p]) / sd[p]);
-  std::ranges::sort(largest);
-  const double width = largest[std::min(count - 1, static_cast<std::size_t>(std::ceil(0.95 * n)) - 1)];
-  band.inside = true;
-  for (std::size_t p = 0; p < points; ++p) {
-    band.tau.push_back(curve[p].tau);
-    band.lower.push_back(std::exp(mean[p] - width * sd[p]));
-    band.median.push_back(std::exp(mean[p]));
-    band.upper.push_back(std::exp(mean[p] + width * sd[p]));
-    band.inside = band.inside && curve[p].allan.value >= band.lower.back() && curve[p].allan.value <= band.upper.back();
-  }
-  return band;
-}
-
 std::vector<ParameterEstimate> parameters_of(const Likelihood& likelihood, const Fit& fit, const Eigen::MatrixXd& covariance,
                                              const CalibrationOptions& options) {
   const SumModel& model = likelihood.model();
@@ -150,7 +105,7 @@ std::vector<Combination> combinations_of(const SumModel& model, const Eigen::Mat
     Eigen::VectorXd direction = eigen.eigenvectors().col(k);
     Eigen::Index largest = 0;
     direction.cwiseAbs().maxCoeff(&largest);
-    // Powers relative to the largest, so that the product reads as one does on paper.
+    // Powers relative to the largest, as usually written.
     combination.relative_sd = 1.0 / std::sqrt(std::max(eigen.eigenvalues()(k), 1e-300)) / std::abs(direction(largest));
     direction /= direction(largest);
     for (Eigen::Index i = 0; i < direction.size(); ++i) {

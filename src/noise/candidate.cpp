@@ -5,14 +5,15 @@
 #include <limits>
 
 #include "coast/record/error.hpp"
+#include "polish.hpp"
 #include "short_likelihood.hpp"
 
 namespace coast::noise {
 
 namespace {
 
-/// Processes that the record does not want: without its variance the likelihood is the same, or its rate has gone to where it
-/// is another process.
+/// Processes without effect on the record's likelihood: it is the same without the variance, or at the rate's limit the
+/// process equals another one.
 std::vector<bool> silent_terms(const ShortLikelihood& likelihood, const std::vector<Interval>& ranges, const SumModel& model,
                                const std::vector<double>& u) {
   constexpr double kAtEnd = 1e-6;
@@ -37,12 +38,41 @@ std::vector<bool> silent_terms(const ShortLikelihood& likelihood, const std::vec
 
 }  // namespace
 
-void score(const Likelihood& likelihood, Candidate& candidate) {
+const std::vector<const Estimable*>& slow_processes() {
+  static const std::vector<const Estimable*> slow{&estimable("gauss_markov"), &estimable("random_walk"), &estimable("flicker")};
+  return slow;
+}
+
+double penalty(const SumModel& model, const std::vector<double>& independent, double samples, double least_gain) {
+  double sum = 0.0;
+  for (const SumModel::Term& term : model.terms()) {
+    const bool slow = std::ranges::count(slow_processes(), term.process) > 0;
+    if (term.process == &estimable("flicker")) sum += least_gain;
+    for (std::size_t i = term.parameter; i < term.parameter + term.parameters; ++i)
+      sum += slow ? std::max(least_gain, std::log(std::min(independent[i], samples))) : std::log(samples);
+  }
+  return sum;
+}
+
+std::vector<double> independent_squares(const Eigen::MatrixXd& information) {
+  const Eigen::MatrixXd covariance = cramer_rao(information);
+  std::vector<double> squares;
+  for (Eigen::Index i = 0; i < covariance.rows(); ++i) squares.push_back(covariance(i, i) > 0.0 ? 2.0 / covariance(i, i) : 0.0);
+  return squares;
+}
+
+void score(const Likelihood& likelihood, const Eigen::MatrixXd& information, Candidate& candidate) {
+  candidate.independent = independent_squares(information);
+  score_again(likelihood, candidate);
+}
+
+void score_again(const Likelihood& likelihood, Candidate& candidate) {
   const double n = likelihood.samples();
-  candidate.parameters = static_cast<int>(candidate.model.parameters()) +
-                         coefficients(candidate.model.mean()) * static_cast<int>(likelihood.records().size());
+  const int means = coefficients(candidate.model.mean()) * static_cast<int>(likelihood.records().size());
+  candidate.parameters = static_cast<int>(candidate.model.parameters()) + means;
   const auto k = static_cast<double>(candidate.parameters);
-  candidate.bic = -2.0 * candidate.compared_log_likelihood + k * std::log(n);
+  candidate.bic =
+      -2.0 * candidate.compared_log_likelihood + penalty(candidate.model, candidate.independent, n) + means * std::log(n);
   candidate.aicc = -2.0 * candidate.compared_log_likelihood + 2.0 * k + 2.0 * k * (k + 1.0) / std::max(1.0, n - k - 1.0);
 }
 
@@ -62,14 +92,22 @@ double held_out_score(const std::vector<StaticSignal>& records, const SumModel& 
   return sum / samples;
 }
 
+void complete(const Likelihood& likelihood, const ShortLikelihood& shortened, Candidate& candidate) {
+  const SumModel& model = candidate.model;
+  const std::vector<bool> silent = silent_terms(shortened, model.ranges(likelihood.scale()), model, candidate.fit.u);
+  candidate.degenerate = std::ranges::count(silent, true) > 0;
+  candidate.compared_log_likelihood = shortened.at_mean(candidate.fit.u);
+  candidate.on_all_samples = shortened.is_whole();
+  score(likelihood, shortened.slope(candidate.fit.u).information, candidate);
+}
+
 Candidate fit_candidate(const std::vector<StaticSignal>& records, const AllanCurve& curve, const SumModel& model,
                         const std::vector<std::vector<double>>& starts) {
   Candidate candidate;
   candidate.model = model;
   const Likelihood likelihood(records, model);
   const ShortLikelihood shortened(likelihood);
-  const SignalScale scale = likelihood.scale();
-  std::vector<double> best = fit_curve(curve, model, scale, CurveFit::kWaveletMoments);
+  std::vector<double> best = fit_curve(curve, model, likelihood.scale(), CurveFit::kWaveletMoments);
   double value = shortened.value(best);
   for (const std::vector<double>& start : starts) {
     const double there = shortened.value(start);
@@ -78,10 +116,19 @@ Candidate fit_candidate(const std::vector<StaticSignal>& records, const AllanCur
     best = start;
   }
   candidate.fit = fit_maximum_likelihood(likelihood, best, {.polished = shortened.is_whole()});
-  candidate.degenerate = std::ranges::count(silent_terms(shortened, model.ranges(scale), model, candidate.fit.u), true) > 0;
-  candidate.compared_log_likelihood = shortened.at_mean(candidate.fit.u);
-  candidate.on_all_samples = shortened.is_whole();
-  score(likelihood, candidate);
+  complete(likelihood, shortened, candidate);
+  return candidate;
+}
+
+Candidate fit_from(const std::vector<StaticSignal>& records, const SumModel& model, const std::vector<double>& start) {
+  Candidate candidate;
+  candidate.model = model;
+  const Likelihood likelihood(records, model);
+  const ShortLikelihood shortened(likelihood);
+  candidate.fit.u = start;
+  polish([&](const std::vector<double>& u) { return shortened.slope(u); }, model, model.ranges(likelihood.scale()), {}, {},
+         candidate.fit);
+  complete(likelihood, shortened, candidate);
   return candidate;
 }
 

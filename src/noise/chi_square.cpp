@@ -9,7 +9,7 @@ namespace {
 
 constexpr double kManyDof = 1000.0;
 
-/// 1 - Q(a, x): Abramowitz & Stegun eq. 6.5.29, for x < a + 1, where its terms fall from the first on.
+/// 1 - Q(a, x): Abramowitz & Stegun eq. 6.5.29, for x < a + 1, where its terms decrease from the first on.
 double lower_by_series(double a, double x) {
   double term = 1.0 / a;
   double sum = term;

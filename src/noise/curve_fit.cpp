@@ -30,13 +30,13 @@ Target target_of(const AllanCurve& curve, double interval, CurveFit kind) {
     const AllanPoint& point = *points[static_cast<std::size_t>(i)];
     target.tau(i) = point.tau;
     target.variance(i) = point.allan.value * point.allan.value;
-    // A chi-square's relative deviation; all points alike for the classical fit.
+    // A chi-square's relative deviation; equal weights for the classical fit.
     target.sd(i) = target.variance(i) * (kind == CurveFit::kAllan ? 1.0 : std::sqrt(2.0 / std::max(point.allan.edf, 1.0)));
   }
   return target;
 }
 
-/// Where the terms' one variance and their rates stand in u.
+/// Positions of the terms' variance and rates in u.
 struct Roles {
   std::vector<std::size_t> scales;  ///< one per term
   std::vector<std::size_t> rates;
@@ -48,7 +48,7 @@ Roles roles_of(const SumModel& model) {
   return roles;
 }
 
-/// Curves of the terms with unit variance, one column each.
+/// Curves of the terms with unit variance, one column per term.
 Eigen::MatrixXd unit_curves(const SumModel& model, const Roles& roles, const std::vector<double>& rates, const Target& target) {
   Eigen::MatrixXd columns(target.tau.size(), static_cast<Eigen::Index>(roles.scales.size()));
   std::vector<double> u = rates;
@@ -60,7 +60,7 @@ Eigen::MatrixXd unit_curves(const SumModel& model, const Roles& roles, const std
   return columns;
 }
 
-/// Non-negative least squares by trying which columns are zero: there are few.
+/// Non-negative least squares by trying all sets of zero columns: there are few columns.
 struct NonNegative {
   Eigen::VectorXd x;
   double cost = std::numeric_limits<double>::infinity();
@@ -90,8 +90,8 @@ NonNegative non_negative_fit(const Eigen::MatrixXd& A, const Eigen::VectorXd& b)
   return best;
 }
 
-/// Rates over a logarithmic grid: ascending where neighbours are of the same process, so that no combination comes twice. Of
-/// many rates, and of partial autocorrelations, whose curves cost more, one after the other is moved over its grid.
+/// Rates over a logarithmic grid: ascending for adjacent rates of the same process, so that no combination occurs twice. If
+/// there are many rates, or partial autocorrelations, whose curves cost more, one at a time is moved over its grid.
 class RateGrid {
  public:
   RateGrid(const SumModel& model, const Roles& roles, const std::vector<Interval>& ranges, const Target& target)
@@ -123,7 +123,7 @@ class RateGrid {
     return ranges_[i].lower + (ranges_[i].upper - ranges_[i].lower) * (k + 0.5) / kPoints;
   }
   [[nodiscard]] bool is_partial(std::size_t i) const { return model_.parameter(i).kind == ParameterInfo::Kind::kPartial; }
-  /// Of all rates: in ascending order those of processes that are alike, any of partial autocorrelations.
+  /// For all rates: in ascending order for equal processes, any order for partial autocorrelations.
   [[nodiscard]] double combinations() const {
     double count = 1.0;
     int ascending = 0;
@@ -133,8 +133,8 @@ class RateGrid {
     }
     return count;
   }
-  /// One rate, or two partial autocorrelations that stand together: where a resonance is takes both.
-  /// @return how many
+  /// One rate, or two adjacent partial autocorrelations: the frequency of a resonance depends on both.
+  /// @return their number
   std::size_t vary_about_best(std::size_t which) {
     const std::vector<double> about = best_;
     const std::size_t i = roles_.rates[which];
@@ -209,15 +209,6 @@ std::vector<double> fit_curve(const AllanCurve& curve, const SumModel& model, co
     return cost(u);
   };
   return search_within(start, ranges, 1e-6, 300, with_gradient).u;
-}
-
-AllanCurve allan_curve(const StaticSignal& signal, const AllanOptions& options) {
-  AllanAccumulator accumulator(signal.interval, options);
-  for (const StaticSignal::Run& run : signal.runs) {
-    if (run.start > 0) accumulator.gap();
-    accumulator.add(std::span(signal.values).subspan(run.first, run.count));
-  }
-  return accumulator.finish();
 }
 
 }  // namespace coast::noise

@@ -1,5 +1,5 @@
 #pragma once
-// How the processes read their entry: a value with its unit, in range, in SI.
+// Reading of a process's configuration entry: a value with its unit, in range, in SI.
 
 #include <string>
 #include <string_view>
@@ -29,7 +29,7 @@ inline constexpr SensorDimension kSmallAngle{geo::Dimension::kAngle, geo::Dimens
 /// The same for a value that may be negative.
 [[nodiscard]] double signed_value_with_unit(const config::Node& entry, std::string_view key, const SensorDimension& dimension,
                                             const EntryContext& context);
-/// The SI unit's name of a dimension, for writing an entry again.
+/// The SI unit's name of a dimension, for writing an entry.
 [[nodiscard]] std::string_view si_unit(geo::Dimension dimension);
 
 }  // namespace coast::noise

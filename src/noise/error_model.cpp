@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "coast/config/quoted.hpp"
+#include "coast/noise/gauss_markov.hpp"
 #include "coast/noise/share.hpp"
 #include "processes/processes.hpp"
 
@@ -22,7 +23,7 @@ std::vector<ProcessPtr> read_list(const config::Node& list, const EntryContext& 
   return processes;
 }
 
-// Naming an axis replaces `all` for it.
+// An entry for an axis replaces `all` for it.
 ImuErrorModel::Axes read_sensor(const config::Node& node, const EntryContext& context) {
   ImuErrorModel::Axes axes;
   const auto all = node.find("all");
@@ -100,7 +101,7 @@ std::vector<std::string> ImuErrorModel::members() const {
 
 ImuErrorModel ImuErrorModel::with_white_noise_scaled(Sensor sensor, double factor) const {
   ImuErrorModel scaled = *this;
-  if (factor == 1.0) return scaled;  // what rounds its samples goes on doing so
+  if (factor == 1.0) return scaled;  // a process that rounds its samples is kept
   for (auto& axis : sensor == Sensor::kGyro ? scaled.gyro_ : scaled.accel_)
     for (ProcessPtr& process : axis)
       if (const double density = white_for_filter(*process); density > 0.0) {
@@ -112,6 +113,41 @@ ImuErrorModel ImuErrorModel::with_white_noise_scaled(Sensor sensor, double facto
   return scaled;
 }
 
+namespace {
+
+// Standard deviation of the state of a constant gain error; nothing for any other process.
+std::optional<double> constant_gain_sd(const Process& process) {
+  if (process.input() == Input::kOne || process.states() != 1 || process.share()) return {};
+  Eigen::MatrixXd Phi(1, 1), P(1, 1);
+  process.transition(1.0, Phi);
+  process.initial_covariance(P);
+  if (Phi(0, 0) != 1.0) return {};
+  return std::sqrt(P(0, 0));
+}
+
+}  // namespace
+
+ImuErrorModel ImuErrorModel::with_gains_known(const record::ImuCalibration& calibration) const {
+  constexpr double kRemains = 0.1;
+  ImuErrorModel known = *this;
+  for (const Sensor sensor : {Sensor::kGyro, Sensor::kAccel})
+    for (int axis = 0; axis < 3; ++axis)
+      for (ProcessPtr& process : (sensor == Sensor::kGyro ? known.gyro_ : known.accel_)[static_cast<std::size_t>(axis)]) {
+        const std::optional<double> stated = constant_gain_sd(*process);
+        if (!stated) continue;
+        const Input input = process->input();
+        const int other = input == Input::kOwnAxis ? axis : (axis + (input == Input::kNextAxis ? 1 : 2)) % 3;
+        const int triad = sensor == Sensor::kGyro ? record::ImuCalibration::kGyro : record::ImuCalibration::kAccel;
+        const double sd = std::min(*stated, std::hypot(calibration.gain_sd(triad, axis, other), kRemains * *stated));
+        process = make_gauss_markov({.name = input == Input::kOwnAxis ? "scale_factor" : "misalignment",
+                                     .input = input,
+                                     .sigma = sd,
+                                     .beta = 0.0,
+                                     .unit = input == Input::kOwnAxis ? "ppm" : "rad"});
+      }
+  return known;
+}
+
 std::string ImuErrorModel::yaml() const {
   std::string text = fmt::format("schema: coast.imu_error_model/1\nsensor: {}\n", config::quoted(sensor_name_));
   if (rate_hz_ > 0.0) text += fmt::format("rate_hz: {:.17g}\n", rate_hz_);
@@ -121,7 +157,7 @@ std::string ImuErrorModel::yaml() const {
       text += fmt::format("  {}:\n", kAxisNames[i]);
       const Process* last_misalignment = nullptr;
       for (const ProcessPtr& process : axes(sensor)[i]) {
-        // An entry of misalignment stands for both of its angles.
+        // A misalignment entry creates both of its angles.
         if (process->input() == Input::kPrevAxis && last_misalignment != nullptr) continue;
         last_misalignment = process->input() == Input::kNextAxis ? process.get() : nullptr;
         text += fmt::format("    - {}\n", process->yaml());

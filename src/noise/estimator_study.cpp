@@ -24,11 +24,11 @@ class Stopwatch {
   std::chrono::steady_clock::time_point began_ = std::chrono::steady_clock::now();
 };
 
-/// One record with what all estimators start from.
+/// One record with the start values of all estimators.
 struct Run {
   std::size_t number = 0;
   StaticSignal signal;
-  AllanCurve curve;  ///< level and slope taken off
+  AllanCurve curve;  ///< level and slope subtracted
   double curve_seconds = 0.0;
 };
 
@@ -48,7 +48,7 @@ Run draw(const EstimatorStudy& study, std::size_t number) {
   return run;
 }
 
-/// The best of maximum likelihood from the truth and from starts about it, a factor of e away in a standard deviation.
+/// The best maximum likelihood from the truth and from starts about it, with a standard deviation of a factor e.
 Fit best_of_starts(const Likelihood& likelihood, const std::vector<double>& curve_start, const EstimatorStudy& study,
                    const StudiedEstimator& estimator, std::uint64_t seed) {
   std::vector<double> centre = curve_start;
@@ -72,7 +72,7 @@ Fit best_of_starts(const Likelihood& likelihood, const std::vector<double>& curv
 
 Fit estimate(const EstimatorStudy& study, const StudiedEstimator& estimator, const Likelihood& likelihood, const Run& run) {
   const auto from_curve = [&](CurveFit kind) { return fit_curve(run.curve, likelihood.model(), likelihood.scale(), kind); };
-  constexpr std::uint64_t kApart = 0x9E3779B97F4A7C15ULL;  // starts must not be drawn with the seed of a record
+  constexpr std::uint64_t kApart = 0x9E3779B97F4A7C15ULL;  // starts must not use the seed of a record
   Fit fit;
   switch (estimator.kind) {
     case Estimator::kEm:
@@ -93,9 +93,9 @@ Fit estimate(const EstimatorStudy& study, const StudiedEstimator& estimator, con
   return fit;
 }
 
-/// Variances whose absence costs next to nothing.
+/// Variances whose removal costs almost nothing.
 std::vector<bool> zeros_of(const Likelihood& likelihood, const std::vector<double>& u, double log_likelihood) {
-  constexpr double kNothing = 1e-3;  // of log-likelihood: a variance that is seen at all costs half or more
+  constexpr double kNothing = 1e-3;  // of log-likelihood: a variance with any effect costs half or more
   const std::vector<Interval> ranges = likelihood.model().ranges(likelihood.scale());
   std::vector<bool> zero(u.size(), false);
   for (std::size_t i = 0; i < u.size(); ++i) {

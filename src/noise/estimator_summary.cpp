@@ -1,4 +1,4 @@
-// What the runs of an estimator study say together.
+// Joint summary of the runs of an estimator study.
 
 #include <algorithm>
 #include <cmath>
@@ -27,7 +27,7 @@ double quantile(std::vector<double> values, double p) {
   return values[below] + (at - static_cast<double>(below)) * (values[above] - values[below]);
 }
 
-/// Terms of one kind, in order of where they stand.
+/// Terms of one kind, in order of position.
 std::vector<const SumModel::Term*> terms_like(const SumModel& model, const Estimable* process) {
   std::vector<const SumModel::Term*> terms;
   for (const SumModel::Term& term : model.terms())
@@ -43,7 +43,7 @@ bool contains(const SumModel& whole, const SumModel& part) {
   });
 }
 
-/// The highest log-likelihood that is known for a sum on one run.
+/// The highest known log-likelihood of a sum on one run.
 double best_known(const EstimatorStudy& study, const EstimatorStudyResult& result, const SumModel& model, std::size_t run) {
   double best = -std::numeric_limits<double>::infinity();
   for (std::size_t e = 0; e < study.estimators.size(); ++e)

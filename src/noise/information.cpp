@@ -1,4 +1,4 @@
-// The expected information of restricted maximum likelihood, and what follows from an information matrix.
+// The expected information of restricted maximum likelihood, and quantities from an information matrix.
 
 #include <Eigen/Eigenvalues>
 #include <cmath>
@@ -12,7 +12,7 @@ namespace coast::noise {
 
 namespace {
 
-/// The block with level and drift as states of a prior so wide that what it adds is below rounding.
+/// The block with level and drift as states with a prior so wide that its information is below rounding.
 SampleBlock with_mean_states(const SampleBlock& block, Mean mean, double samples) {
   const Eigen::Index n = block.h.size();
   const Eigen::Index m = coefficients(mean);
@@ -133,7 +133,7 @@ class InformationFilter {
   Eigen::MatrixXd information_;
 };
 
-constexpr double kMostValues = 20000.0;  // of a longer record blocks are taken
+constexpr double kMostValues = 20000.0;  // for a longer record blocks are used
 
 Eigen::MatrixXd run_filter(const SumModel& model, const std::vector<double>& u, const SampleStep& step, Mean mean,
                            std::uint64_t values) {
@@ -152,23 +152,26 @@ Eigen::MatrixXd expected_information(const SumModel& model, const std::vector<do
   const SampleStep step(interval, block);
   const std::uint64_t blocks = samples / block;
   Eigen::MatrixXd information = run_filter(model, u, step, model.mean(), blocks);
-  // Within a block: what its samples tell beside their mean, which stands for itself.
+  // Within a block: the information of its samples in addition to their mean, which is counted separately.
   if (block > 1) information += static_cast<double>(blocks) * run_filter(model, u, SampleStep(interval), Mean::kLevel, block);
   return information;
 }
 
 Eigen::MatrixXd record_information(const Likelihood& likelihood, const std::vector<double>& u) {
+  constexpr Eigen::Index kManyStates = 6;  // for more, the moments of all pairs of parameters take minutes
+  const auto by_lines = [&] { return spectral_slope(spectrum_of(likelihood.records()), likelihood.model(), u).information; };
+  const bool is_long = likelihood.samples() > kMostValues;
+  if (is_long && likelihood.model().states() > kManyStates) return by_lines();
   const auto p = static_cast<Eigen::Index>(u.size());
   Eigen::MatrixXd information = Eigen::MatrixXd::Zero(p, p);
   for (const Detrended& record : likelihood.records())
     information += expected_information(likelihood.model(), u, likelihood.interval(), record.signal.length());
-  if (likelihood.samples() <= kMostValues) return information;
-  // A resonance that rings longer than a block is in no block: lines of the spectrum hold it.
+  if (!is_long) return information;
+  // A resonance with a decay longer than a block is not covered by blocks: lines of the spectrum are used.
   constexpr double kKnown = 4.0;
-  Eigen::MatrixXd by_lines = spectral_slope(spectrum_of(likelihood.records()), likelihood.model(), u).information;
-  const Eigen::VectorXd lines = by_lines.diagonal();
+  Eigen::MatrixXd lines = by_lines();
   for (Eigen::Index i = 0; i < p; ++i)
-    if (lines(i) > kKnown && lines(i) > 2.0 * information(i, i)) return by_lines;
+    if (lines(i, i) > kKnown && lines(i, i) > 2.0 * information(i, i)) return lines;
   return information;
 }
 

@@ -9,20 +9,21 @@
 #include <stdexcept>
 
 #include "kalman/passes.hpp"
+#include "kalman/stationary_pass.hpp"
 
 namespace coast::noise {
 
 namespace {
 
-/// What one record gives at one u: the sums, the mean that maximises, and the log-likelihood there.
+/// Results for one record at one u: the sums, the maximising mean, and the log-likelihood there.
 struct Concentrated {
   double log_likelihood = -std::numeric_limits<double>::infinity();  ///< restricted
   double at_mean = -std::numeric_limits<double>::infinity();         ///< maximised over level and drift
-  MeanCurve curve;                                                   ///< in the grid's tau
+  MeanCurve curve;                                                   ///< in tau of the grid
   Eigen::MatrixXd normal;                                            ///< X' V^-1 X
 };
 
-/// log of |X'V^-1 X| / |X'X|: what the mean takes from the likelihood of the processes, but for a constant.
+/// log of |X'V^-1 X| / |X'X|: what estimating the mean subtracts from the log-likelihood, up to a constant.
 double log_weight(const Eigen::MatrixXd& normal, const StaticSignal& signal) {
   const Eigen::Index m = normal.rows();
   if (m == 0) return 0.0;
@@ -75,7 +76,7 @@ MeanEstimate in_seconds(const Concentrated& fit, const Detrended& record) {
   return mean;
 }
 
-/// With no drift in the model the slope that was taken off beforehand has to come back.
+/// Without drift in the model, the slope that was subtracted before is added again.
 Detrended prepared(const StaticSignal& signal, Mean mean) {
   Detrended record = detrend(signal);
   if (mean == Mean::kLevelAndDrift) return record;
@@ -164,9 +165,9 @@ LikelihoodValue Likelihood::value(const std::vector<double>& u) const {
   return sum;
 }
 
-// The mean maximises the likelihood, so the gradient at a fixed mean is that of the maximum over it; log |X'V^-1 X| has its
+// The mean maximises the likelihood, so the gradient at a fixed mean is that of the maximum over it; log |X'V^-1 X| adds its
 // own.
-LikelihoodSlope Likelihood::slope(const std::vector<double>& u) const {
+LikelihoodSlope Likelihood::slope_with(const std::vector<double>& u, const Eigen::MatrixXd* information) const {
   const SampleBlock block = model_.block(u, step());
   const std::vector<SampleBlock> derivatives = model_.derivatives(u, step());
   const auto p = static_cast<Eigen::Index>(u.size());
@@ -175,7 +176,8 @@ LikelihoodSlope Likelihood::slope(const std::vector<double>& u) const {
     const Concentrated fit = concentrate(block, record.signal, model_.mean());
     sum.log_likelihood += fit.log_likelihood;
     if (!std::isfinite(fit.log_likelihood)) return sum;
-    const ScoreSums score = score_pass(block, derivatives, record.signal, fit.curve);
+    const auto known = information != nullptr ? stationary_score(block, derivatives, record.signal, fit.curve) : std::nullopt;
+    const ScoreSums score = known ? *known : score_pass(block, derivatives, record.signal, fit.curve);
     sum.gradient += score.gradient;
     const Eigen::Index m = fit.normal.rows();
     if (m > 0) {
@@ -183,9 +185,18 @@ LikelihoodSlope Likelihood::slope(const std::vector<double>& u) const {
       for (Eigen::Index i = 0; i < p; ++i)
         sum.gradient(i) -= 0.5 * (inverse * score.products[static_cast<std::size_t>(i)].topLeftCorner(m, m)).trace();
     }
-    sum.information += score.information;
+    if (information == nullptr) sum.information += score.information;
   }
+  if (information != nullptr) sum.information = *information;
   return sum;
+}
+
+LikelihoodSlope Likelihood::slope(const std::vector<double>& u) const {
+  return slope_with(u, nullptr);
+}
+
+LikelihoodSlope Likelihood::slope(const std::vector<double>& u, const Eigen::MatrixXd& information) const {
+  return slope_with(u, &information);
 }
 
 Likelihood::Expectation Likelihood::expectation(const std::vector<double>& u, std::vector<double>& memory) const {

@@ -9,10 +9,10 @@ namespace coast::noise {
 
 namespace {
 
-constexpr double kNear = 3.0;  // of log-likelihood: what is further below before it is polished does not come up
+constexpr double kNear = 3.0;  // of log-likelihood: a start further below before it is polished does not become the best
 
-/// Variances that start at nothing are lifted to where the likelihood's slope in their logarithm can be told from zero: at
-/// nothing every start is a stationary point.
+/// Variances that start near zero are raised until the likelihood's slope in their logarithm differs from zero: near
+/// zero every start is a stationary point.
 void lift_from_zero(const Likelihood& likelihood, const std::vector<Interval>& box, std::vector<double>& u) {
   constexpr double kNothing = 15.0;  // the range spans 42
   constexpr double kSmall = 15.0;    // below the upper end: 3e-4 of the signal
@@ -21,9 +21,9 @@ void lift_from_zero(const Likelihood& likelihood, const std::vector<Interval>& b
       u[i] = std::clamp(box[i].upper - kSmall, box[i].lower, box[i].upper);
 }
 
-/// A start that has nothing to do with the given one: rates evenly apart, in logarithms, over what the record holds. Nothing
-/// with fewer than two rates: such sums have one top as a rule, larger ones may have another where two processes share the work
-/// of one.
+/// A start independent of the given one: rates equally spaced, in logarithms, over the record's range. None
+/// with fewer than two rates: such sums usually have one maximum, larger ones may have another in which two processes share the
+/// part of one.
 std::optional<std::vector<double>> spread_start(const SumModel& model, const std::vector<Interval>& box,
                                                 std::vector<double> u) {
   std::vector<std::size_t> rates;
@@ -38,7 +38,7 @@ std::optional<std::vector<double>> spread_start(const SumModel& model, const std
   return u;
 }
 
-/// The way up, on a stand-in of a long record and then on all of it.
+/// The maximisation, on an approximation of a long record and then on all of it.
 class Ascent {
  public:
   Ascent(const Likelihood& likelihood, std::vector<Interval> box, const MaximumLikelihoodOptions& options)
@@ -84,8 +84,8 @@ void Ascent::on_stand_in(Fit& fit) {
   excess_ = excess_curvature(slope, fit.u);
 }
 
-/// Where the information is too poor a curvature, along a flat ridge, the steps get too short; then the curvature itself
-/// counts.
+/// If the information is a poor approximation of the curvature, along a flat ridge, the steps get too short; then the curvature
+/// itself is used.
 void Ascent::finish(Fit& fit) const {
   const auto slope = [&](const std::vector<double>& u) { return likelihood_.slope(u); };
   polish(slope, likelihood_.model(), box_, excess_, {.tolerance = options_.tolerance}, fit);
@@ -104,8 +104,8 @@ void take_if_better(const Fit& other, Fit& fit) {
   fit.trace.push_back(other.log_likelihood);
 }
 
-/// A likelihood may have a second top where a process is not there. Where the sum without it is nearly as likely, its top is
-/// looked for too.
+/// A likelihood may have a second maximum without one of the processes. If the sum without it is nearly as likely, its maximum
+/// is tried as a start too.
 void Ascent::try_without(Fit& fit) const {
   for (std::size_t i = 0; i < box_.size(); ++i) {
     if (likelihood_.model().parameter(i).kind != ParameterInfo::Kind::kVariance || fit.u[i] <= box_[i].lower) continue;

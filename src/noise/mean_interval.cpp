@@ -15,11 +15,11 @@ struct Place {
   Eigen::Index coefficient = 0;
 };
 
-/// The restricted log-likelihood with one coefficient held at a value, the others profiled as ever:
+/// The restricted log-likelihood with one coefficient held at a value, the others profiled as usual:
 ///
 ///     log L(u) - z(u)^2 / 2,    z = (value - its generalised least squares estimate at u) / standard deviation of that.
 ///
-/// Of white noise its maximum over u is -(n - 1)/2 log(sum of squares about the value): Student's t, all but its quantile.
+/// For white noise its maximum over u is -(n - 1)/2 log(sum of squares about the value): Student's t except for its quantile.
 class HeldMean {
  public:
   HeldMean(const Likelihood& likelihood, Place place, double value) : likelihood_(likelihood), place_(place), value_(value) {}
@@ -30,7 +30,7 @@ class HeldMean {
     const Eigen::VectorXd dz = departure_slope(u);
     slope.log_likelihood -= 0.5 * z * z;
     slope.gradient -= z * dz;
-    // z goes with the root of a variance that goes with exp(u): z d2z is dz dz' there, once more.
+    // z is proportional to the root of a variance that is proportional to exp(u): z d2z equals dz dz' and adds it once more.
     slope.information += 2.0 * dz * dz.transpose();
     return slope;
   }
@@ -43,7 +43,7 @@ class HeldMean {
     return (value_ - mean.value(place_.coefficient)) / std::sqrt(mean.covariance(place_.coefficient, place_.coefficient));
   }
   [[nodiscard]] Eigen::VectorXd departure_slope(const std::vector<double>& u) const {
-    constexpr double kStep = 1e-3;  // of logarithms: its error goes with the square, 1e-6
+    constexpr double kStep = 1e-3;  // of logarithms: the error is proportional to its square, 1e-6
     Eigen::VectorXd slope(static_cast<Eigen::Index>(u.size()));
     for (std::size_t i = 0; i < u.size(); ++i) {
       std::vector<double> at = u;
@@ -61,14 +61,14 @@ class HeldMean {
 };
 
 ProfileInterval interval_of(const Likelihood& likelihood, const Fit& top, Place place, double at) {
-  constexpr double kFarthest = 50.0;   // standard deviations; as good as not bounded
+  constexpr double kFarthest = 50.0;   // standard deviations; practically unbounded
   constexpr double kTolerance = 5e-4;  // of log-likelihood: 3e-4 of the root
   const std::vector<Interval> ranges = likelihood.model().ranges(likelihood.scale());
   const MeanEstimate mean = likelihood.value(top.u).means.at(place.record);
   const double centre = mean.value(place.coefficient);
   const double sd = std::sqrt(mean.covariance(place.coefficient, place.coefficient));
   const auto distance = [&](double direction) {
-    Fit fit = top;  // the other parameters start where they were at the distance before
+    Fit fit = top;  // the other parameters start at their values for the previous distance
     const auto root_at = [&](double d) {
       fit.converged = false;
       polish(HeldMean(likelihood, place, centre + direction * d), likelihood.model(), ranges, {}, {.tolerance = kTolerance},
@@ -86,10 +86,10 @@ ProfileInterval interval_of(const Likelihood& likelihood, const Fit& top, Place 
 }  // namespace
 
 std::vector<std::vector<ProfileInterval>> mean_intervals(const Likelihood& likelihood, const Fit& fit) {
-  constexpr double kManySamples = 40000.0;  // shorter records are followed as they are
-  constexpr double kEnough = 8000.0;        // block means: level and drift live at the slow end
+  constexpr double kManySamples = 16000.0;  // shorter records are used as they are
+  constexpr double kEnough = 8000.0;        // block means: level and drift depend on low frequencies
   const std::vector<MeanEstimate> means = likelihood.value(fit.u).means;
-  // A record shorter than a block would be missing among the blocks.
+  // A record shorter than a block would be lost with block means.
   const std::optional<Likelihood> blocks =
       likelihood.samples() > kManySamples ? on_block_means(likelihood, kEnough) : std::nullopt;
   const Likelihood& followed = blocks && blocks->records().size() == likelihood.records().size() ? *blocks : likelihood;

@@ -13,7 +13,7 @@ class Polish {
   Polish(const SlopeFunction& likelihood, const SumModel& model, std::vector<Interval> box, Eigen::MatrixXd excess, Fit& fit)
       : likelihood_(likelihood), model_(model), box_(std::move(box)), excess_(std::move(excess)), fit_(fit) {}
 
-  void run(double tolerance, int steps) {
+  void run(double tolerance, int steps, bool learns) {
     LikelihoodSlope at = likelihood_(fit_.u);
     ++fit_.passes;
     fit_.log_likelihood = at.log_likelihood;
@@ -31,7 +31,10 @@ class Polish {
       const std::vector<double> next = moved(move);
       LikelihoodSlope there = likelihood_(next);
       ++fit_.passes;
-      if (there.log_likelihood > at.log_likelihood) {
+      const bool gained = there.log_likelihood > at.log_likelihood;
+      if (learns && std::isfinite(there.log_likelihood))
+        learn(curvature, next, at.gradient - there.gradient, held, gained ? there.information : at.information);
+      if (gained) {
         damping = std::max(1e-9, 0.1 * damping);
         at = std::move(there);
         fit_.u = next;
@@ -45,7 +48,7 @@ class Polish {
   }
 
  private:
-  static constexpr double kFarthest = 1.5;  // in a logarithm: beyond it the quadratic model is worth nothing
+  static constexpr double kFarthest = 1.5;  // in a logarithm: beyond it the quadratic model is invalid
 
   [[nodiscard]] std::vector<bool> at_bounds(const Eigen::VectorXd& gradient) const {
     std::vector<bool> held(fit_.u.size());
@@ -56,10 +59,10 @@ class Polish {
     }
     return held;
   }
-  /// The information approximates the curvature where the model fits; along flat directions what it leaves out counts.
+  /// The information approximates the curvature if the model fits; along flat directions the neglected part matters.
   [[nodiscard]] Eigen::MatrixXd curvature_at(const LikelihoodSlope& at) const {
     if (excess_.size() == 0) return at.information;
-    constexpr double kUnseen = 1e-6;  // the excess comes from differences and has their noise
+    constexpr double kUnseen = 1e-6;  // the excess comes from differences and has their errors
     Eigen::MatrixXd excess = excess_;
     for (Eigen::Index i = 0; i < excess.rows(); ++i)
       if (at.information(i, i) < kUnseen) {
@@ -68,6 +71,23 @@ class Polish {
       }
     const Eigen::MatrixXd curvature = at.information + excess;
     return curvature.llt().info() == Eigen::Success ? curvature : at.information;
+  }
+  /// @param change      of minus the gradient, from here to `next`
+  /// @param subtracted  information of the next place to start from
+  void learn(const Eigen::MatrixXd& curvature, const std::vector<double>& next, Eigen::VectorXd change,
+             const std::vector<bool>& held, const Eigen::MatrixXd& subtracted) {
+    constexpr double kLeast = 1e-3;  // of the curvature expected along the step: else rounding, or beyond an inflection
+    Eigen::VectorXd step(change.size());
+    for (Eigen::Index i = 0; i < step.size(); ++i)
+      step(i) = next[static_cast<std::size_t>(i)] - fit_.u[static_cast<std::size_t>(i)];
+    Eigen::VectorXd expected = curvature * step;
+    for (Eigen::Index i = 0; i < step.size(); ++i)
+      if (held[static_cast<std::size_t>(i)]) expected(i) = change(i) = 0.0;
+    const double along = step.dot(expected);
+    const double found = step.dot(change);
+    excess_ = curvature - subtracted;
+    if (along > 0.0 && found > kLeast * along)
+      excess_ += change * change.transpose() / found - expected * expected.transpose() / along;
   }
   static Eigen::VectorXd proposal(const LikelihoodSlope& at, Eigen::MatrixXd curvature, const std::vector<bool>& held,
                                   double damping) {
@@ -82,8 +102,8 @@ class Polish {
     }
     return curvature.ldlt().solve(gradient);
   }
-  /// A variance far from its optimum goes there in its own value, not its logarithm: about nothing the likelihood is a parabola
-  /// of the value, and where that has its top below zero the variance is not there.
+  /// A variance far from its optimum moves in its own value, not its logarithm: near zero the likelihood is a parabola
+  /// of the value, and if its maximum is below zero the variance is zero.
   [[nodiscard]] std::vector<double> moved(const Eigen::VectorXd& move) const {
     const auto far_variance = [&](std::size_t i) {
       return std::abs(move(static_cast<Eigen::Index>(i))) > kFarthest &&
@@ -120,7 +140,7 @@ std::vector<Interval> box_of(const Likelihood& likelihood, const std::vector<dou
 
 void polish(const SlopeFunction& likelihood, const SumModel& model, const std::vector<Interval>& box,
             const Eigen::MatrixXd& excess, const PolishOptions& options, Fit& fit) {
-  Polish(likelihood, model, box, excess, fit).run(options.tolerance, options.steps);
+  Polish(likelihood, model, box, excess, fit).run(options.tolerance, options.steps, options.learns);
 }
 
 Eigen::MatrixXd excess_curvature(const SlopeFunction& likelihood, const std::vector<double>& u) {

@@ -12,7 +12,7 @@ namespace coast::noise {
 
 namespace {
 
-/// A likelihood that is followed, and its maximum.
+/// A likelihood to be profiled, and its maximum.
 class Followed {
  public:
   Followed(SlopeFunction slope, const SumModel& model, const SignalScale& scale, const std::vector<double>& start)
@@ -48,13 +48,13 @@ class Followed {
 /// The signed root of the likelihood ratio along one parameter, the others maximised over.
 class Profile {
  public:
-  /// @param tangent  of the others as they follow `which` near the maximum
+  /// @param tangent  of the others as functions of `which` near the maximum
   Profile(const Followed& likelihood, std::size_t which, double direction, const Eigen::VectorXd& tangent)
       : likelihood_(likelihood), which_(which), direction_(direction), tangent_(tangent), nuisance_(likelihood.top().u) {}
 
   /// sqrt(2 (max - profile)) at `distance` from the maximum.
   double root_at(double distance) {
-    constexpr double kFarthest = 0.7;  // a tangent is trusted for a factor of two
+    constexpr double kFarthest = 0.7;  // the tangent is valid for a factor of two
     const double ahead = direction_ * (distance - distance_);
     for (std::size_t i = 0; i < nuisance_.size(); ++i)
       nuisance_[i] += std::clamp(ahead * tangent_(static_cast<Eigen::Index>(i)), -kFarthest, kFarthest);
@@ -82,7 +82,7 @@ Eigen::VectorXd tangent_of(const Eigen::MatrixXd& information, std::size_t which
   return tangent;
 }
 
-/// About `at`, as wide as it is about the maximum of what is followed.
+/// About `at`, with the width of the interval about the maximum of the profiled likelihood.
 ProfileInterval interval_about(double at, const Followed& likelihood, std::size_t which, double sd) {
   const double top = likelihood.top().u[which];
   const Interval& range = likelihood.range(which);
@@ -98,7 +98,7 @@ ProfileInterval interval_about(double at, const Followed& likelihood, std::size_
   return interval;
 }
 
-/// What the intervals of a long record are followed on.
+/// The likelihoods used for the intervals of a long record.
 class Extracts {
  public:
   Extracts(const Likelihood& likelihood, const Fit& fit) {
@@ -146,7 +146,7 @@ std::vector<ProfileInterval> profile_intervals(const Likelihood& likelihood, con
   const Extracts extracts(likelihood, fit);
   tbb::parallel_for(std::size_t{0}, intervals.size(), [&](std::size_t i) {
     const double sd = sd_of(covariance, i);
-    // What is known well has a parabola for its logarithm, and of a long record an extract no longer holds all of it.
+    // A well-known parameter has a parabolic log-likelihood, and an extract has only part of a long record's information.
     if (sd < kSharp)
       intervals[i] = {fit.u[i] - kProfileRoot95 * sd, fit.u[i] + kProfileRoot95 * sd};
     else

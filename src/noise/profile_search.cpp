@@ -7,8 +7,8 @@ namespace coast::noise {
 
 namespace {
 
-/// Where the root is 1.96, by what was found at up to two distances: the root is a straight line where the likelihood is a
-/// parabola, and bends a little where it is not: r = a d + b d^2.
+/// Distance where the root is 1.96, from the roots at up to two distances: the root is linear if the log-likelihood is a
+/// parabola, and slightly curved if it is not: r = a d + b d^2.
 class RootCurve {
  public:
   double next(double distance, double root) {
@@ -31,7 +31,7 @@ class RootCurve {
 
 std::optional<double> crossing(const std::function<double(double)>& root_at, double guess, double farthest) {
   constexpr int kSteps = 25;
-  constexpr int kPatience = 5;  // then the root bends away from 1.96, and may never come to it
+  constexpr int kPatience = 5;  // then the root bends away from 1.96, and may never reach it
   constexpr double kClose = 0.01;
   RootCurve curve;
   double near = 0.0;

@@ -1,4 +1,4 @@
-// Records drawn from a sum of processes, and what the smoother makes of a record's components.
+// Records simulated from a sum of processes, and smoothed components of a record.
 
 #include <fmt/format.h>
 
@@ -47,7 +47,7 @@ std::vector<double> draw(const SampleBlock& block, std::uint64_t length, std::ui
   return values;
 }
 
-/// Level and drift as fitted, in the grid's tau.
+/// Level and drift as fitted, in tau of the grid.
 MeanCurve mean_curve(const Likelihood& likelihood, const std::vector<double>& u, std::size_t record) {
   const Detrended& detrended = likelihood.records()[record];
   const Eigen::VectorXd fitted = likelihood.value(u).means[record].value;
@@ -58,7 +58,7 @@ MeanCurve mean_curve(const Likelihood& likelihood, const std::vector<double>& u,
   return mean;
 }
 
-/// One row for each process that has states; the components get their names.
+/// One row for each process with states; sets the names of the components.
 Eigen::MatrixXd output_rows(const SumModel& model, const SampleBlock& block, SmoothedComponents& result) {
   Eigen::MatrixXd rows = Eigen::MatrixXd::Zero(static_cast<Eigen::Index>(model.terms().size()), block.h.size());
   Eigen::Index count = 0;
@@ -71,7 +71,7 @@ Eigen::MatrixXd output_rows(const SumModel& model, const SampleBlock& block, Smo
   return rows.topRows(count);
 }
 
-/// Means of the signal over `stride` grid points, level and drift taken off.
+/// Means of the signal over `stride` grid points, level and drift subtracted.
 std::vector<double> binned(const StaticSignal& signal, const MeanCurve& mean, std::size_t stride, std::size_t bins) {
   const GridTime time(signal);
   std::vector<double> sums(bins, 0.0);

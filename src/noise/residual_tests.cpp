@@ -22,7 +22,7 @@ ResidualTest chi2_test(double statistic, double dof) {
 ArrayXd about_mean(std::span<const double> values, const char* what) {
   const Eigen::Map<const ArrayXd> all(values.data(), std::ssize(values));
   ArrayXd centred = all - all.mean();
-  // Rounding of the mean leaves this much of values that are all alike.
+  // Rounding of the mean leaves residuals of this size if all values are equal.
   const double rounding = 1e-14 * all.abs().maxCoeff();
   if (!(centred.abs().maxCoeff() > rounding)) throw std::invalid_argument(fmt::format("{}: values that are all alike", what));
   return centred;

@@ -7,10 +7,10 @@ namespace coast::noise {
 
 namespace {
 
-// The smallest distance between values that are not the same but for the rounding of their conversion.
+// The smallest distance between values that differ by more than the rounding of their conversion.
 double step_of(std::vector<double> values) {
   constexpr double kSame = 1e-6;  // of the range
-  constexpr double kMost = 0.1;   // values that differ, of all: more are no lattice that the record shows
+  constexpr double kMost = 0.1;   // share of different values: with more the record shows no lattice
   std::ranges::sort(values);
   const double same = kSame * (values.back() - values.front());
   double least = 0.0;

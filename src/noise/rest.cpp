@@ -13,12 +13,12 @@ namespace {
 
 constexpr double kWindow = 1.0;            // s
 constexpr double kLongEnough = 60.0;       // s
-constexpr std::size_t kBesideMotion = 2;   // windows; a hand comes and goes softly
-constexpr double kScatters = 8.0;          // of 1e6 changes of white noise none is that large
-constexpr double kOfWhiteNoise = 6.0;      // of 1e8 none; of coarse steps most changes are nothing, and so is their quantile
-constexpr double kBeyondWhiteNoise = 4.0;  // in the scatter of the means
+constexpr std::size_t kBesideMotion = 2;   // windows; handling begins and ends gradually
+constexpr double kScatters = 8.0;          // exceeded by none of 1e6 changes of white noise
+constexpr double kOfWhiteNoise = 6.0;      // by none of 1e8; for coarse steps most changes are zero, and so is their quantile
+constexpr double kBeyondWhiteNoise = 4.0;  // in units of the scatter of the means
 
-/// What no sensor's own errors do from one second to the next.
+/// Changes larger than any sensor error from one second to the next.
 struct Motion {
   double least;       ///< change that may be motion
   double throughout;  ///< scatter of changes that is motion
@@ -26,7 +26,7 @@ struct Motion {
 constexpr Motion kGyro{0.2 * geo::kDegree, 0.5 * geo::kDegree};
 constexpr Motion kAccelerometer{0.05, 0.15};
 
-/// Mean over each window, of what there is of it; nothing where half of it is missing.
+/// Mean of the available samples in each window; none if half of them are missing.
 std::vector<double> window_means(const StaticSignal& signal, std::size_t length) {
   const std::size_t windows = static_cast<std::size_t>(signal.length()) / length;
   std::vector<double> sums(windows, 0.0);
@@ -43,7 +43,7 @@ std::vector<double> window_means(const StaticSignal& signal, std::size_t length)
   return sums;
 }
 
-/// Standard deviation by the lower quartile of sizes: half the changes may be of motion.
+/// Standard deviation by the lower quartile of absolute values: up to half of the changes may be motion.
 double scatter_of_changes(std::vector<double> changes) {
   constexpr double kQuartileOfSizes = 0.3186;  // sigmas, of a normal distribution
   if (changes.empty()) return 0.0;
@@ -52,7 +52,7 @@ double scatter_of_changes(std::vector<double> changes) {
   return *quartile / kQuartileOfSizes;
 }
 
-/// Marks the windows between which an axis changes by more than it does by itself.
+/// Marks the windows between which an axis changes by more than its own errors.
 void mark(const StaticSignal& signal, const Motion& motion, std::size_t length, std::vector<bool>& moved) {
   const std::vector<double> means = window_means(signal, length);
   std::vector<double> changes;
@@ -83,7 +83,7 @@ Rest rest_of(const StaticRecording& recording) {
   for (std::size_t begin = 0; begin < moved.size();) {
     std::size_t end = begin;
     while (end < moved.size() && !moved[end]) ++end;
-    // Beside a motion, not beside the recording's own ends.
+    // At the ends of motion, not at the ends of the recording.
     const std::size_t from = begin > 0 ? begin + kBesideMotion : begin;
     const std::size_t to = end < moved.size() ? end - std::min(end, kBesideMotion) : end;
     if (to > from && static_cast<double>(to - from) * window >= kLongEnough)

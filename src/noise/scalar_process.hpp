@@ -1,11 +1,11 @@
 #pragma once
-// A process with a single state: what white noise, constants, walks and Gauss-Markov processes have in common.
+// A process with a single state: common base of white noise, constants, walks and Gauss-Markov processes.
 
 #include "coast/noise/process.hpp"
 
 namespace coast::noise {
 
-/// x[k+1] = phi(dt) x[k] + w, var w = q(dt), error = x * input. Derived classes say phi, q and the initial variance.
+/// x[k+1] = phi(dt) x[k] + w, var w = q(dt), error = x * input. Derived classes define phi, q and the initial variance.
 class ScalarProcess : public Process {
  public:
   [[nodiscard]] int states() const override { return 1; }

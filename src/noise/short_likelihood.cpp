@@ -6,15 +6,16 @@
 namespace coast::noise {
 
 namespace {
-constexpr double kLong = 40000.0;  // values; shorter records are searched as they are
+constexpr double kLong = 40000.0;  // values; shorter records are used as they are
 }  // namespace
 
 std::optional<Likelihood> on_block_means(const Likelihood& likelihood, double most_values) {
   const auto block = static_cast<std::size_t>(std::ceil(likelihood.samples() / most_values));
   if (block < 2 || !likelihood.model().has_averages()) return {};
+  constexpr double kShare = 0.75;  // few missing samples hardly change a block's mean, but may be in every block
   std::vector<StaticSignal> means;
   for (const Detrended& record : likelihood.records()) {
-    StaticSignal blocks = block_means(record.signal, block);
+    StaticSignal blocks = block_means(record.signal, block, kShare);
     if (!blocks.values.empty()) means.push_back(std::move(blocks));
   }
   if (means.empty()) return {};

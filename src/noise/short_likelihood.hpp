@@ -1,5 +1,5 @@
 #pragma once
-// Shorter stand-ins of long records. Private to the room.
+// Shorter approximations of long records. Private to the room.
 
 #include <optional>
 
@@ -7,15 +7,15 @@
 
 namespace coast::noise {
 
-/// Means of blocks, enough of them to hold what slow processes tell; nothing where the record is short already or the sum has
-/// no averages.
+/// Means of blocks, enough of them to keep the information on slow processes; none if the record is short already or the sum
+/// cannot be averaged.
 [[nodiscard]] std::optional<Likelihood> on_block_means(const Likelihood& likelihood, double most_values);
 
-/// Likelihood of a long record from two short ones: block means for slow processes, the record's beginning for fast ones. It
-/// is for searching only: both know a little of the same.
+/// Likelihood of a long record from two short ones: block means for slow processes, the first samples for fast ones. It
+/// is for searching only: some information is in both.
 class ShortLikelihood {
  public:
-  /// Of a short record it is the likelihood itself.
+  /// For a short record it is the likelihood itself.
   explicit ShortLikelihood(const Likelihood& likelihood);
   [[nodiscard]] bool is_whole() const { return whole_; }
   [[nodiscard]] double value(const std::vector<double>& u) const;

@@ -14,10 +14,8 @@ namespace coast::noise {
 namespace {
 
 using Complex = std::complex<double>;
-using ComplexMatrix = Eigen::Matrix<Complex, Eigen::Dynamic, Eigen::Dynamic, 0, kMostStates, kMostStates>;
-using ComplexVector = Eigen::Matrix<Complex, Eigen::Dynamic, 1, 0, kMostStates, 1>;
 
-/// A length at or below n without a prime factor above five: what the transform is fast for.
+/// A length of at most n without a prime factor above five, for which the transform is fast.
 std::size_t smooth_below(std::size_t n) {
   for (;; --n) {
     std::size_t rest = n;
@@ -46,7 +44,41 @@ std::vector<double> periodogram(const std::vector<double>& values) {
   return density;
 }
 
-/// Density of a sum of processes over frequency, with its slopes: y = h (z - Phi)^-1 w + v with z on the unit circle.
+/// A point on the unit circle: z = exp(i omega), and the square of its distance from 1, without cancellation.
+struct Phasor {
+  explicit Phasor(double omega) : z(std::polar(1.0, omega)), square(4.0 * std::sin(0.5 * omega) * std::sin(0.5 * omega)) {}
+  Complex z;
+  double square;
+};
+
+/// States without coupling: a sum of h^2 Q / |z - phi|^2.
+class ScalarStates {
+ public:
+  static bool apply_to(const SampleBlock& block) { return block.Phi.isDiagonal(0.0) && block.Q.isDiagonal(0.0); }
+
+  static double density(const SampleBlock& block, const Phasor& at) {
+    double sum = block.white;
+    for (Eigen::Index i = 0; i < block.h.size(); ++i)
+      sum += block.h(i) * block.h(i) * block.Q(i, i) / distance(block.Phi(i, i), at);
+    return sum;
+  }
+  static double slope(const SampleBlock& block, const SampleBlock& d, const Phasor& at) {
+    double sum = d.white;
+    for (Eigen::Index i = 0; i < block.h.size(); ++i) {
+      const double lost = 1.0 - block.Phi(i, i);
+      const double from = distance(block.Phi(i, i), at);
+      const double change = d.Phi(i, i) * (at.square - 2.0 * lost);  // of `from`
+      sum += block.h(i) * block.h(i) / from * (d.Q(i, i) - block.Q(i, i) * change / from);
+    }
+    return sum;
+  }
+
+ private:
+  /// |z - phi|^2 = (1 - phi)^2 + phi |z - 1|^2
+  static double distance(double phi, const Phasor& at) { return (1.0 - phi) * (1.0 - phi) + phi * at.square; }
+};
+
+/// Spectral density of a sum of processes, with its slopes: y = h (z - Phi)^-1 w + v with z on the unit circle.
 class Density {
  public:
   Density(const SumModel& model, const std::vector<double>& u, double interval, bool with_slopes) : interval_(interval) {
@@ -55,47 +87,84 @@ class Density {
       Term& added = terms_.emplace_back();
       added.first = static_cast<Eigen::Index>(term.parameter);
       added.block = term.process->block(own, interval);
-      if (with_slopes) added.slopes = term.process->derivatives(own, interval);
+      added.scalar = ScalarStates::apply_to(added.block);
+      if (!with_slopes) continue;
+      added.slopes = term.process->derivatives(own, interval);
+      for (const SampleBlock& d : added.slopes) added.sparse.push_back({d.white, elements(d.Phi), elements(d.Q)});
     }
   }
 
-  /// @param slope  of the logarithms of parameters; empty: not wanted
+  /// @param slope  with respect to the logarithms of parameters; empty: not computed
   double at(double frequency, Eigen::VectorXd& slope) const {
-    const Complex z = std::polar(1.0, 2.0 * std::numbers::pi * frequency * interval_);
+    const Phasor place(2.0 * std::numbers::pi * frequency * interval_);
     double sum = 0.0;
-    for (const Term& term : terms_) sum += add(term, z, slope);
+    for (const Term& term : terms_) sum += term.scalar ? add_scalar(term, place, slope) : add(term, place.z, slope);
     return sum;
   }
 
  private:
+  struct Element {
+    Eigen::Index row = 0;
+    Eigen::Index col = 0;
+    double value = 0.0;
+  };
+  /// A derivative by one parameter: few elements of a block depend on it.
+  struct Slope {
+    double white = 0.0;
+    std::vector<Element> Phi;
+    std::vector<Element> Q;
+  };
   struct Term {
     Eigen::Index first = 0;
     SampleBlock block;
     std::vector<SampleBlock> slopes;
+    std::vector<Slope> sparse;  ///< the same
+    bool scalar = false;
   };
 
+  static std::vector<Element> elements(const Eigen::MatrixXd& matrix) {
+    std::vector<Element> all;
+    for (Eigen::Index c = 0; c < matrix.cols(); ++c)
+      for (Eigen::Index r = 0; r < matrix.rows(); ++r)
+        if (matrix(r, c) != 0.0) all.push_back({r, c, matrix(r, c)});
+    return all;
+  }
+  static double add_scalar(const Term& term, const Phasor& place, Eigen::VectorXd& slope) {
+    for (std::size_t i = 0; i < term.slopes.size(); ++i)
+      slope(term.first + static_cast<Eigen::Index>(i)) = ScalarStates::slope(term.block, term.slopes[i], place);
+    return ScalarStates::density(term.block, place);
+  }
   static double add(const Term& term, const Complex& z, Eigen::VectorXd& slope) {
-    const SampleBlock& block = term.block;
-    const Eigen::Index n = block.h.size();
-    double density = block.white;
-    ComplexVector g;
-    ComplexVector b;
-    if (n > 0) {
-      ComplexMatrix A = -block.Phi.cast<Complex>();
-      A.diagonal().array() += z;
-      const Eigen::PartialPivLU<ComplexMatrix> factor(A);
-      g = factor.transpose().solve(block.h.transpose().cast<Complex>());
-      const ComplexVector driven = block.Q.cast<Complex>() * g.conjugate();
-      density += (g.transpose() * driven).value().real();
-      if (!term.slopes.empty()) b = factor.solve(driven);
+    switch (term.block.h.size()) {
+      case 2:
+        return add_sized<2>(term, z, slope);
+      case 3:
+        return add_sized<3>(term, z, slope);
+      case 4:
+        return add_sized<4>(term, z, slope);
+      default:
+        return add_sized<Eigen::Dynamic>(term, z, slope);
     }
-    for (std::size_t i = 0; i < term.slopes.size(); ++i) {
-      const SampleBlock& d = term.slopes[i];
-      double& to = slope(term.first + static_cast<Eigen::Index>(i));
-      to = d.white;
-      if (n == 0) continue;
-      to += (g.transpose() * d.Q.cast<Complex>() * g.conjugate()).value().real();
-      to += 2.0 * (g.transpose() * d.Phi.cast<Complex>() * b).value().real();
+  }
+  template <int N>
+  static double add_sized(const Term& term, const Complex& z, Eigen::VectorXd& slope) {
+    constexpr int kMost = N == Eigen::Dynamic ? kMostStates : N;
+    using Square = Eigen::Matrix<Complex, N, N, 0, kMost, kMost>;
+    using Column = Eigen::Matrix<Complex, N, 1, 0, kMost, 1>;
+    const SampleBlock& block = term.block;
+    Square A = -block.Phi.cast<Complex>();
+    A.diagonal().array() += z;
+    const Square inverse = A.inverse();
+    const Column g = inverse.transpose() * block.h.transpose().cast<Complex>();
+    const Column driven = block.Q.cast<Complex>() * g.conjugate();
+    const double density = block.white + (g.transpose() * driven).value().real();
+    if (term.sparse.empty()) return density;
+    const Column b = inverse * driven;
+    for (std::size_t i = 0; i < term.sparse.size(); ++i) {
+      double sum = term.sparse[i].white;
+      for (const Element& e : term.sparse[i].Q) sum += e.value * (g(e.row) * std::conj(g(e.col))).real();
+      for (const Element& e : term.sparse[i].Phi) sum += 2.0 * e.value * (g(e.row) * b(e.col)).real();
+      slope(term.first + static_cast<Eigen::Index>(i)) = sum;
     }
     return density;
   }
@@ -109,7 +178,7 @@ class Density {
 Spectrum spectrum_of(const std::vector<Detrended>& records) {
   constexpr double kRelativeWidth = 0.01;
   constexpr double kMostBins = 1000.0;
-  constexpr std::size_t kFirst = 2;  // lower lines stand in the window's shadow of level and drift
+  constexpr std::size_t kFirst = 2;  // lower lines are affected by level and drift through the window
   Spectrum spectrum{records.front().signal.interval, {}};
   for (const Detrended& record : records) {
     const std::vector<double> lines = periodogram(record.signal.values);
@@ -157,7 +226,7 @@ LikelihoodSlope spectral_slope(const Spectrum& spectrum, const SumModel& model, 
 
 std::optional<Band> strongest_band(const Spectrum& spectrum, const SumModel& model, const std::vector<double>& u) {
   constexpr double kSigmas = 6.0;
-  constexpr double kShared = 1.94;  // neighbouring lines under a Hann window: their mean scatters by its root more
+  constexpr double kShared = 1.94;  // variance factor of a mean of lines: under a Hann window neighbours are correlated
   const Density density(model, u, spectrum.interval, false);
   Eigen::VectorXd none(0);
   struct Sums {
@@ -183,7 +252,7 @@ std::optional<Band> strongest_band(const Spectrum& spectrum, const SumModel& mod
       const double width = last.frequency - first.frequency + 0.5 * (last.width + first.width);
       const double sigmas =
           (sums[from + count].excess - sums[from].excess) / std::sqrt(kShared * (sums[from + count].lines - sums[from].lines));
-      // Records stand one after the other: a band does not go from one to the next.
+      // Records follow each other: a band does not extend from one to the next.
       if (width <= 0.0 || width > widest || sigmas < kSigmas || (best && sigmas <= best->sigmas)) continue;
       best = Band{0.5 * (first.frequency + last.frequency), width, sums[from + count].variance - sums[from].variance, sigmas};
     }

@@ -13,9 +13,9 @@ namespace coast::noise {
 
 namespace {
 
-constexpr double kGapFactor = 1.5;  // as the readers have it: a longer step has lost samples
+constexpr double kGapFactor = 1.5;  // as in the readers: after a longer step samples are missing
 
-/// Samples of the part, and the mean step between those that follow each other without a gap.
+/// Samples of the part, and the mean step between adjacent samples without a gap.
 struct GridStretch {
   std::size_t first = 0;
   std::size_t end = 0;
@@ -46,7 +46,7 @@ GridStretch stretch_of(const record::ImuRecording& imu, const RecordingPart& par
       sum += samples[i].dt;
       count += 1.0;
     }
-  // Times in seconds of a week have their rounding: a rate that is that close to whole thousandths of a Hz is meant.
+  // Times in seconds of week are rounded: a rate this close to a multiple of 0.001 Hz is assumed to be exact.
   constexpr double kMeant = 1e-9;
   const double rate = count > 0.0 ? count / sum : imu.rate_hz;
   const double round = std::round(1e3 * rate) / 1e3;
@@ -54,13 +54,13 @@ GridStretch stretch_of(const record::ImuRecording& imu, const RecordingPart& par
   return stretch;
 }
 
-/// Where each sample that is kept stands on the grid.
+/// Grid positions of the samples that are kept.
 struct Grid {
   std::vector<StaticSignal::Run> runs;
   std::vector<std::size_t> samples;
   std::size_t holes = 0;
   std::uint64_t missing = 0;  ///< intervals without a sample
-  double worst = 0.0;         ///< rounding of a hole to the grid, intervals
+  double worst = 0.0;         ///< error of rounding a hole to the grid, intervals
 };
 
 Grid grid_of(const record::ImuRecording& imu, const GridStretch& stretch) {

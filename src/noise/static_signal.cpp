@@ -1,6 +1,7 @@
 #include "coast/noise/static_signal.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 namespace coast::noise {
 
@@ -39,7 +40,7 @@ Detrended detrend(const StaticSignal& signal) {
   const auto sum_over = [&](const auto& term) {
     double sum = 0.0;
     for (const StaticSignal::Run& run : signal.runs) {
-      double part = 0.0;  // a sum of sums loses fewer digits
+      double part = 0.0;  // partial sums lose fewer digits
       for (std::size_t i = 0; i < run.count; ++i)
         part += term(static_cast<double>(run.start + i) - middle, signal.values[run.first + i]);
       sum += part;
@@ -61,17 +62,28 @@ Detrended detrend(const StaticSignal& signal) {
   return result;
 }
 
-StaticSignal block_means(const StaticSignal& signal, std::size_t factor) {
+StaticSignal block_means(const StaticSignal& signal, std::size_t factor, double share) {
   if (factor <= 1) return signal;
+  const auto least = static_cast<std::size_t>(std::ceil(share * static_cast<double>(factor)));
   SignalBuilder blocks(signal, signal.interval * static_cast<double>(factor), signal.values.size() / factor);
-  for (const StaticSignal::Run& run : signal.runs) {
-    for (std::uint64_t block = (run.start + factor - 1) / factor; (block + 1) * factor <= run.start + run.count; ++block) {
-      const std::size_t first = run.first + static_cast<std::size_t>(block * factor - run.start);
-      double sum = 0.0;
-      for (std::size_t i = 0; i < factor; ++i) sum += signal.values[first + i];
-      blocks.add(block, sum / static_cast<double>(factor));
+  std::uint64_t block = 0;
+  double sum = 0.0;
+  std::size_t count = 0;
+  const auto finish = [&] {
+    const bool within = (block + 1) * factor <= signal.length();
+    if (within && count > 0 && count >= least) blocks.add(block, sum / static_cast<double>(count));
+    sum = 0.0;
+    count = 0;
+  };
+  for (const StaticSignal::Run& run : signal.runs)
+    for (std::size_t i = 0; i < run.count; ++i) {
+      const std::uint64_t here = (run.start + i) / factor;
+      if (here != block) finish();
+      block = here;
+      sum += signal.values[run.first + i];
+      ++count;
     }
-  }
+  finish();
   return std::move(blocks).take();
 }
 

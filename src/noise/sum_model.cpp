@@ -14,7 +14,7 @@ std::span<const double> own(const std::vector<double>& u, const SumModel::Term& 
   return std::span(u).subspan(term.parameter, term.parameters);
 }
 
-/// Puts blocks beside each other on the diagonal.
+/// Block-diagonal combination of blocks.
 SampleBlock stacked(const std::vector<SampleBlock>& blocks) {
   Eigen::Index states = 0;
   for (const SampleBlock& block : blocks) states += block.h.size();

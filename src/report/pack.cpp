@@ -14,7 +14,7 @@ namespace {
 
 constexpr std::string_view kAlphabet = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
 constexpr int kCompressionLevel = 4;                  // level 9 saves 3 % and takes five times as long
-constexpr std::size_t kMostWords = 64 * 1024 * 1024;  // refuse to allocate more on the word of a damaged file
+constexpr std::size_t kMostWords = 64 * 1024 * 1024;  // do not allocate more because of a damaged file
 
 std::array<int, 256> make_inverse_alphabet() {
   std::array<int, 256> inverse;
@@ -34,7 +34,7 @@ std::string deflate_words(const std::vector<std::uint32_t>& words) {
   uLongf size = compressBound(static_cast<uLong>(bytes.size()));
   std::vector<std::uint8_t> packed(size);
   if (compress2(packed.data(), &size, bytes.data(), static_cast<uLong>(bytes.size()), kCompressionLevel) != Z_OK) {
-    throw std::bad_alloc();  // the one way in which it fails with room for compressBound
+    throw std::bad_alloc();  // the only possible failure with compressBound of memory
   }
   packed.resize(size);
   return base64_encode(packed);

@@ -16,10 +16,10 @@ namespace coast::report {
 
 /// Rounded to 32 bit floats: {"n", "z"}.
 [[nodiscard]] nlohmann::json pack_floats(std::span<const double> values);
-/// Increasing finite values as x0 + q k, q a power of ten finer than 3e-9 of the span: {"n", "x0", "q", "z"}, z holding the
+/// Increasing finite values as x0 + q k, q a power of ten finer than 3e-9 of the span: {"n", "x0", "q", "z"}, z with the
 /// differences of k; values in any other order as floats.
 [[nodiscard]] nlohmann::json pack_abscissae(std::span<const double> values);
-/// Of either form.  @throws std::invalid_argument the text does not decode to n words; nlohmann::json::exception a key is
+/// For either form.  @throws std::invalid_argument the text does not decode to n words; nlohmann::json::exception a key is
 /// missing
 [[nodiscard]] std::vector<double> unpack(const nlohmann::json& packed);
 

@@ -113,7 +113,7 @@ Bars& add_histogram(Plot& plot, std::string label, std::vector<double> values, i
   };
   double low = quantile(0.0005);
   double high = quantile(0.9995);
-  if (!(high > low)) {  // all alike: one bar of a width that can be drawn
+  if (!(high > low)) {  // all equal: one bar with a width that can be drawn
     const double half = std::max(1e-9, 0.5 * std::abs(low));
     low -= half;
     high += half;

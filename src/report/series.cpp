@@ -131,7 +131,7 @@ void Decimator::merge_pairs() {
   bounds_.resize(out);
   if (!last_is_odd) last_bucket_count_ += bucket_size_;  // its predecessor was full
   bucket_size_ *= 2;
-  // Gaps keep their buckets apart; where they dominate, merging gains nothing and the limit has to give way.
+  // Gaps keep their buckets separate; if they dominate, merging gains nothing and the limit has to be raised.
   if (out > before / 4 * 3) room_for_gaps_ += before;
 }
 
@@ -220,7 +220,7 @@ Series decimate(const Series& series, const DecimationOptions& options) {
     }
   }
   Series out = curve.finish();
-  out.band.reset();  // its own follows, on its own x
+  out.band.reset();  // its own is added below, on its own x
   out.not_finite += series.not_finite;
   if (series.band) {
     Decimator band(options);

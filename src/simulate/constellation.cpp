@@ -23,7 +23,7 @@ struct Pattern {
   double a = 0.0;            ///< m
   double inclination = 0.0;  ///< rad
   double step = 0.0;         ///< s between ephemerides
-  double phasing = 0.0;      ///< of a plane against the one before, as a share of the spacing in it
+  double phasing = 0.0;      ///< of a plane relative to the previous one, as a fraction of the spacing in it
   double node = 0.0;         ///< rad, of the first plane
 };
 
@@ -48,7 +48,7 @@ double mean_motion(SatelliteSystem system, double a) {
   return std::sqrt(mu / (a * a * a));
 }
 
-/// The first ephemeris: BeiDou's numbers begin behind those that are geostationary.
+/// The first ephemeris: BeiDou's numbers begin after the geostationary ones.
 KeplerEphemeris first_of(SatelliteSystem system, const Pattern& p, int plane, int slot, geo::GpsTime toe, Normal& draw) {
   constexpr int kBeidouMedium = 19;
   KeplerEphemeris e;
@@ -70,14 +70,14 @@ KeplerEphemeris first_of(SatelliteSystem system, const Pattern& p, int plane, in
   return e;
 }
 
-/// The same orbit and clock, told from a later reference.
+/// The same orbit and clock, with a later reference time.
 KeplerEphemeris later(const KeplerEphemeris& first, double seconds) {
   KeplerEphemeris e = first;
   e.toe = e.toc = first.toe + seconds;
   e.clock[0] += seconds * e.clock[1];
   e.mean_anomaly =
       std::remainder(first.mean_anomaly + mean_motion(e.satellite.system, e.sqrt_a * e.sqrt_a) * seconds, 2.0 * kPi);
-  // The node counts from the begin of the week; when a new one begins, the Earth has turned on.
+  // The node refers to the beginning of the week; when a new one begins, the Earth has rotated further.
   const double begin = (e.toe.week() - first.toe.week()) * 604800.0;
   e.node = std::remainder(first.node + first.node_rate * seconds - 7.2921151467e-5 * begin, 2.0 * kPi);
   e.issue = first.issue + static_cast<int>(std::lround(seconds / 900.0));

@@ -1,5 +1,5 @@
 #pragma once
-// Broadcast ephemerides of satellites that do not exist. Private to the room.
+// Broadcast ephemerides of simulated satellites. Private to the room.
 
 #include <vector>
 
@@ -7,7 +7,7 @@
 
 namespace coast::simulate {
 
-/// Equally spaced satellites in the planes of the real constellations, with ephemerides for the whole interval: of GPS and QZSS
+/// Equally spaced satellites in the planes of the real constellations, with ephemerides for the whole interval: GPS and QZSS
 /// every two hours, Galileo every 30 minutes, BeiDou every hour, GLONASS every 30 minutes. Clocks differ by seed.
 /// @throws std::invalid_argument  another system
 record::NavigationRecording constellation(const std::vector<record::SatelliteSystem>& systems, geo::GpsTime from,

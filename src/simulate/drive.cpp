@@ -18,7 +18,7 @@ Drive& Drive::cruise(double seconds) {
 
 Drive& Drive::speed_to(double mps, double seconds) {
   if (speed_now_ == 0.0) {
-    // The step's foot waits, so that the time at rest is exactly that.
+    // The beginning of the step is delayed, so that the time at rest is exact.
     now_ += Steps::reach(seconds);
     moving_from_ = now_;
   }

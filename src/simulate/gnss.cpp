@@ -32,7 +32,7 @@ Eigen::Vector3d stated_sd(const GnssOptions& o) {
   return (o.sd.cwiseAbs2() + o.correlated->sd.cwiseAbs2()).cwiseSqrt();
 }
 
-// Streams of the run's seed: 3 and onwards, after gyro and accelerometer.
+// Random streams of the run's seed: from 3 on, after gyro and accelerometer.
 class PositionError {
  public:
   PositionError(const GnssOptions& options, std::uint64_t seed)

@@ -40,7 +40,7 @@ std::vector<record::Signal> signals_of(SatelliteSystem system) {
   }
 }
 
-/// Stationary Gauss-Markov process of unit variance, drawn at any times in order.
+/// Stationary Gauss-Markov process of unit variance, simulated at any times in order.
 class GaussMarkov {
  public:
   GaussMarkov(std::uint64_t seed, double time) : draw_(seed), time_(time), value_(draw_()) {}
@@ -58,10 +58,10 @@ class GaussMarkov {
   double value_;
 };
 
-/// What a receiver keeps of one phase.
+/// A receiver's state for one phase.
 struct PhaseLock {
   double cycles = 0.0;  ///< the ambiguity
-  double last = -1e9;   ///< s, when it was tracked
+  double last = -1e9;   ///< s, when it was last tracked
 };
 
 /// One receiver, epoch by epoch.
@@ -89,12 +89,12 @@ class Receiver {
   }
 
   [[nodiscard]] const Clock& clock() const { return clock_; }
-  /// @param t  true time since the start, s  @param tag  what the receiver's clock shows, since the start: t plus its error
+  /// @param t  true time since the start, s  @param tag  time by the receiver's clock, since the start: t plus its error
   record::ObservationEpoch observe(double t, double tag, const Kinematics& antenna, const std::vector<Satellite>& satellites,
                                    const std::map<int, int>& channels, std::vector<CycleSlip>& slips);
 
  private:
-  /// Geometry, clocks of satellite, and air, all but the receiver's clock; as at time t.
+  /// Geometry, satellite clock and atmosphere, everything except the receiver's clock; at time t.
   struct Way {
     double metres = 0.0;  ///< of a signal without ionosphere
     double ionosphere = 0.0;
@@ -128,11 +128,11 @@ class Receiver {
   Clock clock_;
   std::map<std::pair<Satellite, char>, GaussMarkov> code_multipath_, phase_multipath_;
   std::map<std::pair<Satellite, char>, PhaseLock> locks_;
-  std::map<Satellite, double> wind_ups_;  ///< of the epoch before
+  std::map<Satellite, double> wind_ups_;  ///< of the previous epoch
 };
 
 std::optional<Receiver::Way> Receiver::way(Satellite satellite, double t, const Kinematics& antenna, double wet) const {
-  // In inertial axes that agree with ECEF at reception: the satellite's position at transmission turns back by omega tau.
+  // In inertial axes that agree with ECEF at reception: the satellite's position at transmission is rotated back by omega tau.
   double tau = 0.075;
   carrier::SatelliteState state;
   const Eigen::Vector3d& r_e = antenna.r_eb_e;
@@ -155,7 +155,7 @@ std::optional<Receiver::Way> Receiver::way(Satellite satellite, double t, const 
                                wound == wind_ups_.end() ? 0.0 : wound->second);
   w.metres =
       kSpeedOfLight * (tau - state.clock_s) + mapping.hydrostatic * zenith.hydrostatic + mapping.wet * (zenith.wet + wet);
-  // A thin layer at 450 km; its vertical delay grows towards the equator.
+  // A thin layer at 450 km; its vertical delay increases towards the equator.
   constexpr double kEarth = 6371e3, kLayer = 450e3;
   const double sine = kEarth / (kEarth + kLayer) * std::cos(w.direction.elevation);
   const double south = kEarth * (base_.latitude - receiver.latitude);
@@ -212,7 +212,7 @@ record::Observation Receiver::observe(Satellite satellite, record::Signal signal
   return o;
 }
 
-/// Where it is soon, or was a while ago.
+/// Extrapolated to slightly later or earlier times.
 Kinematics moved(Kinematics antenna, double dt) {
   antenna.r_eb_e += dt * antenna.v_eb_e;
   const Eigen::Vector3d angle = dt * antenna.omega_eb_b;

@@ -27,7 +27,7 @@ GaussLegendre::GaussLegendre(int n) {
     node.push_back(0.5 * (1.0 - x));
     weight.push_back(1.0 / ((1.0 - x * x) * slope * slope));
   }
-  // Rounding near the ends costs 1e-14; a constant shall be integrated to rounding, as gravity nearly is.
+  // Rounding near the ends is 1e-14; a constant must be integrated to rounding, as gravity is nearly constant.
   for (double& w : weight) w /= sum;
 }
 

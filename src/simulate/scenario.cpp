@@ -246,13 +246,13 @@ ErrorFreeMission::Recordings ErrorFreeMission::recorded(const std::optional<nois
 }
 
 record::ImuRecording simulate_array_imu(const Scenario& scenario, std::size_t index, int threads) {
-  constexpr std::uint64_t kOwnSeeds = 1000003;  // apart from those of the scenario's own IMU and of further seeds
+  constexpr std::uint64_t kOwnSeeds = 1000003;  // different from those of the scenario's own IMU and of further seeds
   const Scenario::ArrayImu& imu = scenario.array.at(index);
   const AnalyticTrajectory motion = make_motion(scenario.kind, scenario.motion);
   const double gain = 1.0 + 1e-6 * imu.clock_drift_ppm;
   ImuSampling sampling;
   sampling.start = scenario.start;
-  sampling.rate_hz = scenario.imu_rate_hz * gain;  // a clock that gains counts its intervals too soon
+  sampling.rate_hz = scenario.imu_rate_hz * gain;  // the intervals of a fast clock are too short
   record::ImuRecording recording =
       with_errors(true_increments(motion, sampling, {imu.position_b, ins::C_s_b(imu.mounting).transpose()}, threads),
                   imu.error_model, scenario.seed + kOwnSeeds * (index + 1));

@@ -12,7 +12,7 @@
 namespace coast::simulate {
 namespace {
 
-constexpr double kSameInstant = 1.5e-9;  // s; epochs are rounded to a nanosecond, and intervals that differ by no more are one
+constexpr double kSameInstant = 1.5e-9;  // s; epochs are rounded to a nanosecond, and intervals that differ less are equal
 
 // Square root L of a positive semidefinite matrix, L L' = P: driving noise may be singular, so no Cholesky.
 Eigen::MatrixXd square_root(const Eigen::MatrixXd& P) {
@@ -69,7 +69,7 @@ struct Realisation::State {
     return 0.5 * (h.dot(before) + h.dot(x));
   }
 
-  // A series at its own rate: each value counts for as long as it is held within the interval.
+  // A series at its own rate: each value is weighted by the time that it is held within the interval.
   double mean_of_held(double dt) {
     double integral = 0.0;
     for (double left = dt; left > kSameInstant;) {
@@ -108,7 +108,7 @@ double Realisation::next(double dt) {
 
 namespace {
 
-// What one process multiplies: the interval for an additive error, else the true increment of the axis it belongs to.
+// The input of a process: the interval for an additive error, else the true increment of its axis.
 double input_increment(noise::Input input, std::size_t axis, const Eigen::Vector3d& truth, double dt) {
   const auto component = [&](std::size_t i) { return truth[static_cast<Eigen::Index>(i % 3)]; };
   switch (input) {
@@ -135,8 +135,8 @@ void add_errors(record::ImuRecording& recording, const record::ImuRecording& tru
   }
 }
 
-// The residue that is carried from sample to sample keeps the integral within half a step of what it was, however long the
-// recording. Where in its step the integral begins is drawn.
+// The residue carried from sample to sample keeps the integral within half a step of the exact one, for a recording of any
+// length. The initial position in the step is random.
 void round_integral(record::ImuRecording& recording, Eigen::Vector3d record::ImuSample::*increment, double step,
                     Eigen::Index axis, std::uint64_t seed) {
   std::mt19937_64 engine(seed);

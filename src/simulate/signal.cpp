@@ -66,7 +66,7 @@ void Steps::add_to_buckets(std::size_t index) {
   const Step& step = steps_[index];
   const double begin = middle(step) - half_width(step);
   const double end = middle(step) + half_width(step);
-  // One bucket of slack on either side: rounding of the quotient then never hides a step in progress.
+  // One bucket of margin on either side: rounding of the quotient then never omits a step in progress.
   const auto from = static_cast<std::size_t>(std::max(0.0, std::floor((begin - first_) / kBucket) - 1.0));
   const auto to = std::min(settled_.size() - 1, static_cast<std::size_t>((end - first_) / kBucket) + 1);
   for (std::size_t b = from; b <= to; ++b) in_progress_[b].push_back(index);

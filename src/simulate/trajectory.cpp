@@ -47,7 +47,7 @@ struct RateJets {
   [[nodiscard]] Eigen::Vector3d derivative() const { return {x.derivative(1), y.derivative(1), z.derivative(1)}; }
 };
 
-// Body rate against the path axes from Euler rates, z-y-x. Groves (2013, 2nd ed.) eq. (2.58).
+// Body rate relative to the path axes from Euler rates, z-y-x. Groves (2013, 2nd ed.) eq. (2.58).
 RateJets euler_rate(const EulerJets& e) {
   const SinCos<1> roll = sincos(truncated<1>(e.roll));
   const SinCos<1> pitch = sincos(truncated<1>(e.pitch));
@@ -58,7 +58,7 @@ RateJets euler_rate(const EulerJets& e) {
   return {droll - dyaw * pitch.sin, dpitch * roll.cos + horizontal * roll.sin, horizontal * roll.cos - dpitch * roll.sin};
 }
 
-// Where the path axes are: stereographic coordinates x = n / 2R, y = e / 2R; C_p_p0 has the Gibbs vector (y, -x, 0).
+// Position of the path axes: stereographic coordinates x = n / 2R, y = e / 2R; C_p_p0 has the Gibbs vector (y, -x, 0).
 struct SphereFrame {
   Jet2 north, east, down;  // position in the axes of the origin, m
   Eigen::Matrix3d C_p_p0;
@@ -191,7 +191,7 @@ std::array<double, 3> AnalyticTrajectory::path_position(double t) const {
 }
 
 Kinematics AnalyticTrajectory::at(double t) const {
-  const std::array<double, 3> path = path_position(t);  // first: it refuses what is no time of the motion
+  const std::array<double, 3> path = path_position(t);  // first: it rejects times outside of the motion
   const SignalJet speed = plan_.speed.at(t);
   const SignalJet course = plan_.course.at(t);
   const SignalJet slope = plan_.slope.at(t);

@@ -1,4 +1,4 @@
-// Where the antenna was, and when: lever arm and time offset, tested where the configuration leaves them to the data, and
+// Antenna position and time: lever arm and time offset, tested if the configuration leaves them to the data, and
 // refined.
 
 #include <algorithm>
@@ -12,9 +12,9 @@ namespace coast::study {
 
 namespace {
 
-constexpr double kWideTime = 0.5;  // s: a fifth of a second is what turns leave open
-constexpr double kWideArm = 1.0;   // m: with its signs turned, a car's arm is two of these off
-constexpr double kFixes = 300.0;   // at least: fewer turns between fixes far apart show neither
+constexpr double kWideTime = 0.5;  // s: turns leave an uncertainty of a fifth of a second
+constexpr double kWideArm = 1.0;   // m: a car's arm with wrong signs is wrong by two of these
+constexpr double kFixes = 300.0;   // at least: with fewer turns between fixes far apart neither is observable
 
 }  // namespace
 
@@ -35,7 +35,7 @@ void PreparedMission::free_antenna() {
   if (tested_.lever_arm) setup_.filter.auxiliary.lever_arm_sd_m = kWideArm;
 }
 
-// The prior stays where the configuration put it, wherever the filter is linearised.
+// The prior remains that of the configuration, wherever the filter is linearised.
 estimate::FilterState PreparedMission::antenna_as_stated(estimate::FilterState state,
                                                          const estimate::StateLayout& layout) const {
   if (layout.time_offset()) state.x(*layout.time_offset()) = setup_.time_offset_s - mission_->time_offset_s;
@@ -43,7 +43,7 @@ estimate::FilterState PreparedMission::antenna_as_stated(estimate::FilterState s
   return state;
 }
 
-// The gate is open, so that every candidate sees the same fixes.
+// The gate is open, so that every candidate uses the same fixes.
 AntennaFit PreparedMission::fit_antenna(AntennaChoice estimated) {
   const double time = mission_->time_offset_s;
   const Eigen::Vector3d arm = mission_->lever_arm_b;
@@ -76,17 +76,17 @@ AntennaFit PreparedMission::fit_antenna(AntennaChoice estimated) {
   return fit;
 }
 
-// Each is estimated where it is many sigmas from what is stated and the fixes are much likelier by it, beside the other. At an
-// even speed one stands for the other and neither is shown beside it: then each is tested alone. Where noise is stated too
-// small, sigma and gain are as much too good as the innovations are too large.
+// Each is estimated, together with the other, if it is many sigmas from the stated value and makes the fixes much likelier. At
+// constant speed the two cannot be separated, and neither is significant with the other: then each is tested alone. If noise is
+// stated too small, sigma and gain are too good by the same factor as the innovations are too large.
 void PreparedMission::test_antenna() {
   constexpr double kSigmas = 6.0;
   constexpr double kLeastGain = 15.0;  // of the log-likelihood
   constexpr double kLeastTime = 3e-3;  // s: less moves a car by centimetres
   constexpr double kLeastArm = 0.03;   // m
-  // Of a difference: beyond it something else is wrong, which neither must hide.
-  constexpr double kLargestTime = 1.5;  // s: what lies farther is found by turns
-  constexpr double kLargestArm = 3.0;   // m: a car's arm with its signs turned is two off
+  // Of a difference: above it there is another error, which neither must hide.
+  constexpr double kLargestTime = 1.5;  // s: larger offsets are found by turns
+  constexpr double kLargestArm = 3.0;   // m: a car's arm with wrong signs is wrong by two
   if (!tested_.time_offset && !tested_.lever_arm) return;
   const auto late = [&](const AntennaFit& fit) {
     return std::abs(fit.time_offset_s) > std::max(kLeastTime, kSigmas * fit.time_offset_sd_s);
@@ -134,7 +134,7 @@ void PreparedMission::keep_as_stated(AntennaChoice which) {
 
 void PreparedMission::take_antenna(AntennaChoice shown, const AntennaFit& found) {
   constexpr double kSdTime = 0.1,
-                   kSdArm = 0.1;  // s, m: at least; twice what was found, so that the prior does not hold it back
+                   kSdArm = 0.1;  // s, m: at least; twice the estimate, so that the prior does not restrict it
   estimate::AuxiliaryStates& auxiliary = setup_.filter.auxiliary;
   if (tested_.time_offset) {
     const bool taken = shown.time_offset || setup_.time_offset_s != 0.0;
@@ -148,9 +148,9 @@ void PreparedMission::take_antenna(AntennaChoice shown, const AntennaFit& found)
   }
 }
 
-// The offset enters as velocity times time, which holds for milliseconds, and whatever else compares with fixes wants them
-// where they belong: time offset and lever arm take what was found until nothing is. Steps that grow end nowhere: what the data
-// were to tell stays as stated then.
+// The effect of the offset is velocity times time, valid for milliseconds, and other comparisons with fixes need correct
+// values: time offset and lever arm are corrected by the estimates until these vanish. If the steps grow there is no
+// convergence: the values to be estimated then remain as stated.
 void PreparedMission::refine_antenna(const Progress& progress) {
   constexpr int kRounds = 5;
   constexpr double kSettledTime = 5e-4;  // s

@@ -29,7 +29,7 @@ const noise::ArmaGarch& noise_of(const ArrayOutagePlan& plan, std::size_t sensor
   return (channel < 3 ? plan.gyro : plan.accel)[sensor];
 }
 
-/// Density at frequency zero of a series sampled every dt: what a navigation filter should take it for.
+/// Density at zero frequency of a series sampled every dt: the one to be used by a navigation filter.
 double density_of(const noise::ArmaGarch& model, double dt) {
   const std::vector<double> psi = model.psi_weights(400);
   const double gain = std::accumulate(psi.begin(), psi.end(), 0.0);
@@ -72,7 +72,7 @@ record::ImuRecording recording_of(const record::ImuRecording& truth,
   return imu;
 }
 
-/// Noise in blocks, relative to its mean, as `imu.noise_levels` has it.
+/// Noise in blocks, relative to its mean, as in `imu.noise_levels`.
 std::vector<record::NoiseLevel> levels_of(const Signals& signals, const std::vector<array::MergedChannel>& channels) {
   const auto block = static_cast<Eigen::Index>(channels.front().noise.block);
   const Eigen::Index blocks = channels.front().noise.variance.cols();
@@ -96,7 +96,7 @@ struct FilterInput {
   noise::ImuErrorModel model;
 };
 
-/// What is known of a single sensor: its slow errors, and the density of its noise at frequency zero.
+/// Model of a single sensor: its slow errors, and the density of its noise at zero frequency.
 noise::ImuErrorModel single_model(const ArrayOutagePlan& plan, double rate_hz, double dt, std::size_t k) {
   std::vector<array::RemainingErrors> channels(kChannels);
   for (int c = 0; c < kChannels; ++c) {
@@ -123,7 +123,7 @@ FilterInput merged_input(const ArrayOutagePlan& plan, const record::ImuRecording
   return input;
 }
 
-/// Every sensor with what is known of it, each with error states of its own: weighted by its white noise, biases kept, and the
+/// Every sensor with its own model and error states: weighted by its white noise, biases kept, and the
 /// sensors' differences for the filter.
 FilterInput extended_input(const ArrayOutagePlan& plan, const record::ImuRecording& truth, const Signals& signals) {
   std::vector<noise::ImuErrorModel> models;
@@ -148,10 +148,10 @@ constexpr std::array kStudiedMerges{NamedMerge{"mean", array::Merge::kMean}, Nam
                                     NamedMerge{"garch", array::Merge::kGarch},
                                     NamedMerge{"corrected", array::Merge::kCorrected}};
 
-/// All ways on one seed, in the order of the runs.
+/// All methods with one seed, in the order of the runs.
 std::vector<OutageResult> run_array_seed(const ArrayOutagePlan& plan, const ErrorFreeMission& mission, const Outage& outage,
                                          std::uint64_t seed) {
-  constexpr double kOffsetWindow = 30.0;  // s, as `coast synth` has it where nothing else is said
+  constexpr double kOffsetWindow = 30.0;  // s, default of `coast synth`
   ErrorFreeMission::Recordings truth = mission.recorded({}, seed);
   ins::to_body(truth.imu, ins::C_s_b(plan.scenario.mounting));
   const Signals signals = record_array(plan, truth.imu, seed);
@@ -191,7 +191,7 @@ std::vector<ArrayOutageRun> run_array_outages(const ArrayOutagePlan& plan, const
   std::size_t done = 0;
   tbb::parallel_for(std::size_t{0}, plan.seeds, [&](std::size_t s) {
     std::vector<OutageResult> of_seed;
-    // A thread that waits inside one seed must not begin another: each needs its memory.
+    // A thread that waits inside one seed must not begin another: each needs its own memory.
     tbb::this_task_arena::isolate([&] { of_seed = run_array_seed(plan, mission, outage, plan.first_seed + s); });
     for (std::size_t i = 0; i < runs.size(); ++i) runs[i].outages[s] = std::move(of_seed[i]);
     const std::scoped_lock lock(mutex);

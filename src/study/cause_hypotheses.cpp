@@ -24,8 +24,8 @@ void add_signs_and_axes(std::vector<CauseHypothesis>& all) {
     Eigen::Matrix3d turned = Eigen::Matrix3d::Identity();
     turned(i, i) = -1.0;
     const char* axis = kAxis[static_cast<std::size_t>(i)];
-    all.push_back({fmt::format("the sign of the gyro about body {} is turned", axis),
-                   "turn that column in the file, or correct `columns` and `axes`",
+    all.push_back({fmt::format("the sign of the gyro about body {} is reversed", axis),
+                   "reverse that column in the file, or correct `columns` and `axes`",
                    [turned](Excerpt& excerpt, Setup&) { change_gyro(excerpt, turned); }});
     const Eigen::Index j = (i + 1) % 3;
     Eigen::Matrix3d exchanged = Eigen::Matrix3d::Identity();

@@ -1,5 +1,5 @@
 #pragma once
-// What may be wrong with how a recording is read; private to the room.
+// Possible errors in the interpretation of a recording; private to the room.
 
 #include <functional>
 #include <string>
@@ -9,14 +9,14 @@
 
 namespace coast::study {
 
-/// What a hypothesis changes, and how it is told.
+/// Change of the setup by a hypothesis, and its description.
 struct CauseHypothesis {
   std::string what;
   std::string remedy;
   std::function<void(Excerpt&, Setup&)> apply;
 };
 
-/// Prior sigmas that leave time offset and lever arm to the data, s and m.
+/// Prior sigmas with which time offset and lever arm are determined by the data, s and m.
 constexpr double kFreeTimeSd = 0.5, kFreeArmSd = 1.0;
 
 /// All of them; a new one is a line in the source.

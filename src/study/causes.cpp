@@ -19,17 +19,17 @@ constexpr double kSeconds = 120.0;
 constexpr double kBeforeMotion = 20.0;
 constexpr double kMoved = 10.0;  // m
 
-// Each hypothesis costs several passes: what turns and accelerates a vehicle is seen at these rates too.
-constexpr double kImuInterval = 0.02;  // s: as many increments are added up as it holds
+// Each hypothesis costs several passes: turns and accelerations of a vehicle are observable at these rates too.
+constexpr double kImuInterval = 0.02;  // s: increments are added up to this interval
 constexpr double kFixInterval = 0.45;  // s, at least
 constexpr int kStartRounds = 2;
 
 struct Fit {
   double log_likelihood = -std::numeric_limits<double>::infinity();  // concentrated
-  double factor = 1.0;                                               // on the sigmas, where it is largest
+  double factor = 1.0;                                               // on the sigmas, at the maximum
   std::optional<double> time_offset_s, time_offset_sd_s;
   std::optional<Eigen::Vector3d> lever_arm_m, lever_arm_sd_m;
-  std::optional<ins::InitialState> start;  // that was found
+  std::optional<ins::InitialState> start;  // as determined
   Eigen::VectorXd start_sensor_errors;
 };
 
@@ -45,7 +45,7 @@ void note_antenna(const estimate::FilterState& last, const estimate::StateLayout
   }
 }
 
-// Nothing adapted.
+// No adaptations.
 Setup as_described(const Setup& stated) {
   Setup setup = stated;
   setup.unstated = {};
@@ -59,7 +59,7 @@ Setup as_described(const Setup& stated) {
   return setup;
 }
 
-// Where the start is found by them too, each fit takes ten passes more: that is left to the hypotheses that are about them.
+// If the start depends on them too, each fit needs ten more passes: done only for the hypotheses about them.
 estimate::FilterOptions antenna_left_to_data(estimate::FilterOptions options, const Setup& stated) {
   estimate::AuxiliaryStates& auxiliary = options.auxiliary;
   if (stated.unstated.time_offset && auxiliary.time_offset_sd_s == 0.0) auxiliary.time_offset_sd_s = kFreeTimeSd;
@@ -67,8 +67,8 @@ estimate::FilterOptions antenna_left_to_data(estimate::FilterOptions options, co
   return options;
 }
 
-/// Under a hypothesis (none: as described) and with the white noise of the IMU times `noise`; about the start of an earlier fit
-/// of the same hypothesis, where there is one.
+/// With a hypothesis (none: as described) and with the white noise of the IMU times `noise`; about the start of an earlier fit
+/// of the same hypothesis, if there is one.
 Fit fit(const Excerpt& excerpt, const Setup& stated, const CauseHypothesis* hypothesis, double noise, const Fit* earlier) {
   Excerpt changed = excerpt;
   Setup setup = as_described(stated);
@@ -96,7 +96,7 @@ Fit fit(const Excerpt& excerpt, const Setup& stated, const CauseHypothesis* hypo
     result.factor = std::sqrt(nis / dof);
     result.log_likelihood = run.log_likelihood + 0.5 * nis - 0.5 * dof * (1.0 + std::log(nis / dof));
     note_antenna(run.last, filter.layout(), mission.mission(), result);
-  } catch (const NumericalError&) {  // not even a start: not likely
+  } catch (const NumericalError&) {  // no start: not likely
   } catch (const InputError&) {      // no common time under this shift
   }
   return result;
@@ -117,7 +117,7 @@ Cause told(const CauseHypothesis& hypothesis, const Fit& fit, double gain) {
   return cause;
 }
 
-/// Fits of one hypothesis with several factors on the noise of the IMU, side by side.
+/// Fits of one hypothesis with several factors on the noise of the IMU, in parallel.
 struct Profile {
   const CauseHypothesis* hypothesis = nullptr;
   std::vector<double> noise;
@@ -143,7 +143,7 @@ void run(const Excerpt& excerpt, const Setup& setup, std::vector<Profile>& profi
   });
 }
 
-// What a run file asks for is no advice.
+// A fit requested in the run file is not reported as advice.
 std::optional<Cause> noise_cause(double factor, double gain, const estimate::NoiseFitChoice& fitted) {
   if (factor > 1.0 ? fitted.imu_white_noise : fitted.gnss_scale) return std::nullopt;
   if (factor > 1.0)
@@ -153,7 +153,7 @@ std::optional<Cause> noise_cause(double factor, double gain, const estimate::Noi
                "`gnss: {noise: estimated}`", gain};
 }
 
-// A gap stays a gap: the next sample is added only where it follows at once.
+// A gap remains a gap: the next sample is added only if it follows at once.
 void add_thinned(const record::ImuSample& sample, double longest, std::vector<record::ImuSample>& thinned) {
   constexpr double kFollows = 1e-4;  // s
   if (thinned.empty() || thinned.back().dt + sample.dt > longest ||
@@ -209,7 +209,7 @@ std::vector<Cause> rank_causes(const Excerpt& excerpt, const Setup& stated) {
 
   const Profile& described = profiles.front();
   const bool aligned = std::isfinite(described.log_likelihood());
-  double least = described.log_likelihood();  // what cannot even be aligned is as likely as the least likely of the rest
+  double least = described.log_likelihood();  // if alignment fails, the likelihood is that of the least likely of the others
   if (!aligned)
     for (const Profile& p : profiles)
       if (std::isfinite(p.log_likelihood())) least = p.log_likelihood();

@@ -55,7 +55,7 @@ Comparison::Comparison(const record::Trajectory& reference, Eigen::Vector3d leve
 
 void Comparison::add(const record::TrajectoryEpoch& epoch) {
   const auto& states = reference_.states;
-  if (!previous_) {  // the reference may begin long before
+  if (!previous_) {  // the reference may begin much earlier
     next_ = static_cast<std::size_t>(std::lower_bound(states.begin(), states.end(), epoch.nav.t,
                                                       [](const record::NavState& nav, geo::GpsTime t) { return nav.t < t; }) -
                                      states.begin());

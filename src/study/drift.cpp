@@ -52,7 +52,7 @@ Drift drift_of(std::span<const OutageResult> outages, bool smoothed) {
 }
 
 double gyro_noise_drift(geo::Psd gyro_density, double duration_s) {
-  constexpr double kGravity = 9.80665;  // m/s^2; the drift is wanted to two digits
+  constexpr double kGravity = 9.80665;  // m/s^2; two digits of the drift are sufficient
   return kGravity * std::sqrt(gyro_density.value * std::pow(duration_s, 5) / 20.0);
 }
 

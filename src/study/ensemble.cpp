@@ -34,7 +34,7 @@ std::vector<OutageGroup> groups_of(const EnsemblePlan& plan, const simulate::Err
   return groups;
 }
 
-/// What every recording of the ensemble shares.
+/// Data common to all recordings of the ensemble.
 struct Shared {
   const EnsemblePlan& plan;
   const simulate::ErrorFreeMission mission;
@@ -51,7 +51,7 @@ struct Shared {
   }
 };
 
-/// Of one recording and one of its filters, the outages that are not known.
+/// For one recording and one of its filters, the outages without known results.
 struct Task {
   std::vector<StudyPlace> places;
   std::vector<Outage> outages;
@@ -89,7 +89,7 @@ class Ensemble {
   std::size_t done_ = 0;
 };
 
-// The first outage of a group is run in any case: its series is drawn, and no journal has it.
+// The first outage of a group is always run: its series is drawn, and is not in the journal.
 Task Ensemble::task(std::size_t run, std::size_t seed) {
   Task task;
   for (std::size_t g = 0; g < shared_.groups.size(); ++g)
@@ -136,7 +136,7 @@ void Ensemble::run(std::size_t recording, const std::function<void(double)>& pro
   const std::size_t seed = recording / shared_.plan.cases.size();
   const std::size_t which = recording % shared_.plan.cases.size();
   try {
-    // A thread that waits inside one recording must not begin another: each needs its memory.
+    // A thread that waits inside one recording must not begin another: each needs its own memory.
     tbb::this_task_arena::isolate([&] { solve(shared_.plan.cases[which], first_run_[which], seed); });
   } catch (const NumericalError& error) {
     throw NumericalError(

@@ -11,16 +11,16 @@ namespace {
 
 constexpr double kAcceleration = 30.0;  // m/s^2
 constexpr double kErrorSigmas = 6.0;
-constexpr double kLeastError = 5.0;   // m: smaller errors are the gate's business
-constexpr double kLongestGap = 60.0;  // s to a neighbour; beyond it nothing is known
+constexpr double kLeastError = 5.0;   // m: smaller errors are left to the gate
+constexpr double kLongestGap = 60.0;  // s to a neighbour; beyond it there is no information
 
 double possible(double seconds_squared, double variance) {
   return std::max(kLeastError, 0.5 * kAcceleration * seconds_squared + kErrorSigmas * std::sqrt(variance));
 }
 
-// Whether a fix lies where the two on one side of it lead: it is not the fix that is wrong where positions jump and stay.
+// Whether a fix continues the line of the two on one side of it: if positions jump permanently the fix is not wrong.
 bool continues(const record::GnssFix& far, const record::GnssFix& near, const record::GnssFix& fix) {
-  const double a = near.t - far.t, b = fix.t - near.t;  // both negative behind the fix
+  const double a = near.t - far.t, b = fix.t - near.t;  // both negative after the fix
   const Eigen::Vector3d led_to = near.r_ea_e + (b / a) * (near.r_ea_e - far.r_ea_e);
   const double variance = fix.position_cov_n.trace() + far.position_cov_n.trace() + near.position_cov_n.trace();
   return (fix.r_ea_e - led_to).norm() < possible(b * (a + b), variance);
@@ -31,7 +31,7 @@ bool continues_a_side(const std::vector<record::GnssFix>& fixes, std::size_t i) 
          (i + 2 < fixes.size() && continues(fixes[i + 2], fixes[i + 1], fixes[i]));
 }
 
-// By how much the distance from the line exceeds what is possible, m; at most zero for a possible fix.
+// Excess of the distance from the line over the possible one, m; at most zero for a possible fix.
 double excess(const record::GnssFix& before, const record::GnssFix& fix, const record::GnssFix& after) {
   const double a = fix.t - before.t, b = after.t - fix.t;
   if (a > kLongestGap || b > kLongestGap) return 0.0;
@@ -46,7 +46,7 @@ void leave_out_gross_errors(record::GnssRecording& gnss, record::Events& events)
   std::vector<record::GnssFix>& fixes = gnss.fixes;
   long count = 0;
   std::optional<geo::GpsTime> first;
-  // A gross error pulls the lines of its neighbours along, by half: it is the one that sticks out most among the three.
+  // A gross error moves the lines of its neighbours by half: it is the one with the largest excess of the three.
   for (bool found = true; found;) {
     std::vector<double> out(fixes.size(), 0.0);
     for (std::size_t i = 1; i + 1 < fixes.size(); ++i) out[i] = excess(fixes[i - 1], fixes[i], fixes[i + 1]);
@@ -65,10 +65,11 @@ void leave_out_gross_errors(record::GnssRecording& gnss, record::Events& events)
     fixes = std::move(kept);
   }
   if (count == 0) return;
-  events.push_back({record::Event::Severity::kWarning, "gross_errors_left_out",
-                    fmt::format("{} GNSS fix{} impossibly far from the line between {} neighbours and {} left out", count,
-                                count == 1 ? " lies" : "es lie", count == 1 ? "its" : "their", count == 1 ? "was" : "were"),
-                    first, count});
+  events.push_back(
+      {record::Event::Severity::kWarning, "gross_errors_left_out",
+       fmt::format("{} GNSS fix{} farther from the line between {} neighbours than a vehicle can move, and {} left out", count,
+                   count == 1 ? " lies" : "es lie", count == 1 ? "its" : "their", count == 1 ? "was" : "were"),
+       first, count});
 }
 
 }  // namespace coast::study

@@ -8,7 +8,7 @@ namespace coast::study {
 
 namespace {
 
-// By how much positions differ from the mean of the velocities: dt^3 / 12 times the jerk.
+// Difference of the positions from the integral of the mean velocity: dt^3 / 12 times the jerk.
 Eigen::Vector3d step_beyond_velocity(const record::NavState& a, const record::NavState& b) {
   return b.r_eb_e - a.r_eb_e - 0.5 * (b.t - a.t) * (a.v_eb_e + b.v_eb_e);
 }
@@ -37,7 +37,7 @@ record::NavState interpolate(const record::NavState& a, const record::NavState& 
   const double s3 = s2 * s;
   nav.r_eb_e = (1.0 - 3.0 * s2 + 2.0 * s3) * a.r_eb_e + (3.0 * s2 - 2.0 * s3) * b.r_eb_e +
                dt * ((s - 2.0 * s2 + s3) * a.v_eb_e + (s3 - s2) * b.v_eb_e);
-  nav.v_eb_e = (1.0 - s) * a.v_eb_e + s * b.v_eb_e;  // the cubic's derivative is this and the rest
+  nav.v_eb_e = (1.0 - s) * a.v_eb_e + s * b.v_eb_e;  // the cubic's derivative equals this plus the remainder
   if (!corrected_between(a, b)) nav.v_eb_e += (6.0 / dt) * (s - s2) * step_beyond_velocity(a, b);
   return nav;
 }
@@ -75,7 +75,7 @@ Eigen::Vector3d mean_acceleration(const record::NavState& a, const record::NavSt
 
 const record::BodyMotion& PassingMotion::at(const record::NavState& nav) {
   if (previous_) {
-    held_ = !held_ && corrected_between(*previous_, nav);  // a body that shakes is corrected nowhere: never for long
+    held_ = !held_ && corrected_between(*previous_, nav);  // vibration looks like a correction: not held twice in a row
     if (!held_) motion_ = {mean_rate(*previous_, nav), mean_acceleration(*previous_, nav)};
   }
   previous_ = nav;

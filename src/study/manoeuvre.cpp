@@ -20,7 +20,7 @@ constexpr double kMoving = 0.5;      // m/s; below it a course is noise
 constexpr double kTurning = 3.0;     // deg/s
 constexpr double kSpeedingUp = 0.5;  // m/s^2
 
-/// Horizontal velocities of neighbouring seconds, N and E; runs end where positions are missing.
+/// Horizontal velocities of consecutive seconds, N and E; runs end where positions are missing.
 std::vector<std::vector<Eigen::Vector2d>> velocities(const record::Trajectory& trajectory, geo::GpsTime from, geo::GpsTime to) {
   std::vector<std::vector<Eigen::Vector2d>> runs(1);
   std::optional<record::NavState> previous;

@@ -20,8 +20,8 @@ namespace coast::study {
 
 namespace {
 
-constexpr double kFitWindow = 1200.0;   // s that noise is fitted over
-constexpr double kShortestFit = 100.0;  // s: fewer say too little of correlated errors
+constexpr double kFitWindow = 1200.0;   // s of data for the fit of noise
+constexpr double kShortestFit = 100.0;  // s: less has too little information on correlated errors
 
 void check_overlap(const record::ImuRecording& imu, const record::GnssRecording& gnss) {
   const auto span = [](geo::GpsTime from, geo::GpsTime to) { return geo::to_string(from) + " to " + geo::to_string(to); };
@@ -43,14 +43,14 @@ double largest(const noise::ImuErrorModel& model, noise::Sensor sensor) {
   return value;
 }
 
-// What `vehicle: car` says: the assumption that the heading rests on holds all along.
+// For `vehicle: car`: the assumption used for the heading holds for the whole mission.
 void drive_like_a_car(estimate::FilterOptions& filter) {
   filter.vehicle.non_holonomic = estimate::NonHolonomic{};
   filter.vehicle.zero_velocity_sd_mps = 0.02;
   filter.auxiliary.mounting_sd = 5.0 * geo::kDegree;
 }
 
-// Where a gap of the IMU stands between the first epoch and the motion that shows the heading, the alignment begins behind it.
+// If there is an IMU gap between the first epoch and the motion that determines the heading, the alignment begins after it.
 ins::InitialState align_around_gaps(const ins::AlignmentInput& input, bool vehicle_forward) {
   const auto long_gap = [](const record::ImuSample& sample) { return sample.dt > kLongGap; };
   const std::vector<record::ImuSample>& samples = input.imu.samples;
@@ -71,7 +71,7 @@ ins::InitialState align_around_gaps(const ins::AlignmentInput& input, bool vehic
     } catch (const NumericalError&) {
     }
   }
-  return ins::align(input, vehicle_forward);  // says why
+  return ins::align(input, vehicle_forward);  // reports the cause
 }
 
 }  // namespace
@@ -109,11 +109,11 @@ PreparedMission::PreparedMission(record::ImuRecording imu, record::GnssRecording
   mission_->carrier = setup_.carrier.get();
 }
 
-// Noise comes first: with noise stated far too small neither the gate nor an offset means anything. The second fit starts
-// from a start that the first has made good.
+// Noise comes first: with noise stated far too small neither the gate nor an offset is meaningful. The second fit uses
+// a start improved with the first one.
 void PreparedMission::fit_and_adopt(const Progress& progress) {
   const noise::ImuErrorModel stated_model = setup_.model;
-  free_antenna();  // what is wrong with it must not be taken for noise
+  free_antenna();  // its errors must not be attributed to noise
   estimate::FilterOptions stated = setup_.filter;
   setup_.filter.gate_probability = 0.0;
   refine_start(progress);
@@ -128,7 +128,7 @@ void PreparedMission::fit_and_adopt(const Progress& progress) {
     choice.to_the_optimum = last;
     noise_fit_ = fit(choice, from, last ? longest : std::min(kFirstMinutes, longest), progress);
     adopt(*noise_fit_);
-    // A correlated error that was found to be nothing begins small again: at nothing its gradient vanishes.
+    // A correlated error estimated as zero starts with a small value again: at zero its gradient vanishes.
     from = noise_fit_->adjustment;
     from.correlated_gnss.horizontal_m = std::max(from.correlated_gnss.horizontal_m, first.correlated_gnss.horizontal_m);
     from.correlated_gnss.vertical_m = std::max(from.correlated_gnss.vertical_m, first.correlated_gnss.vertical_m);
@@ -136,7 +136,7 @@ void PreparedMission::fit_and_adopt(const Progress& progress) {
     adapt_drift();
     refine_antenna(progress);
     if (last) break;
-    test_antenna();  // beside noise that is stated wrongly an offset means nothing
+    test_antenna();  // with wrongly stated noise an offset is meaningless
     stated.auxiliary.time_offset_sd_s = setup_.filter.auxiliary.time_offset_sd_s;
     stated.auxiliary.lever_arm_sd_m = setup_.filter.auxiliary.lever_arm_sd_m;
   }
@@ -202,7 +202,7 @@ estimate::FilterState PreparedMission::start_state(const estimate::ForwardFilter
   return state;
 }
 
-// The alignment may have needed motion: from there the filter runs back to where both recordings begin.
+// The alignment may have needed motion: from there the filter runs back to the beginning of both recordings.
 void PreparedMission::run_back_to_first_epoch() {
   const geo::GpsTime first = std::max(imu_.samples.front().t, gnss_.fixes.front().t - 5.0);
   if (start_.nav.t - first < 0.5) return;
@@ -229,10 +229,10 @@ estimate::FilterResult PreparedMission::first_seconds(double seconds, const esti
   return filter.run_until(antenna_as_stated(start_state(filter), filter.layout()), start_.nav.t + seconds, outputs);
 }
 
-// Gauss-Newton on the start: the filter is linearised about a start that the data themselves have corrected. The uncertainty
-// stays that of the alignment, so no fix counts twice for more than its linearisation.
+// Gauss-Newton on the start: the filter is linearised about a start corrected by the data. The uncertainty
+// remains that of the alignment, so no fix is used twice except for its linearisation.
 void PreparedMission::refine_start(const Progress& progress) {
-  if (setup_.start) return;  // what the user gave stays
+  if (setup_.start) return;  // a start given by the user is kept
   const estimate::ForwardFilter filter(*mission_, setup_.model, setup_.filter);
   estimate::FilterOptions options = setup_.filter;
   double seconds = kFirstMinutes;

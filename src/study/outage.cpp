@@ -10,7 +10,7 @@ namespace coast::study {
 
 namespace {
 
-constexpr double kSeriesInterval = 0.1;  // s, of the errors kept
+constexpr double kSeriesInterval = 0.1;  // s, of the stored errors
 
 }  // namespace
 

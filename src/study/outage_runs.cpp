@@ -12,14 +12,14 @@ namespace coast::study {
 
 namespace {
 
-/// Where an outage leaves the gap-free run and comes back to it.
+/// Where an outage branches off from the gap-free run and where it rejoins it.
 struct Branch {
   std::size_t from = 0;  ///< knot
   geo::GpsTime until;
-  std::optional<std::size_t> behind = {};  ///< knot whose future is taken over there
+  std::optional<std::size_t> behind = {};  ///< knot whose future is used there
 };
 
-/// Index of the first knot at or after t; size() where there is none.
+/// Index of the first knot at or after t; size() if there is none.
 std::size_t first_knot_at(const estimate::KnotStore& knots, geo::GpsTime t) {
   std::size_t low = 0;
   std::size_t high = knots.size();
@@ -79,7 +79,7 @@ OutageResult run_branch(const PreparedMission& mission, const Truth& truth, cons
   return result_of(outage, forward, smoothed, truth);
 }
 
-/// Futures at the knots that some branch takes over, by knot.
+/// Futures at the knots where some branch rejoins, by knot.
 struct Futures {
   std::vector<std::size_t> at;
   std::vector<estimate::Future> known;

@@ -65,7 +65,7 @@ double sign_test(std::size_t first, std::size_t second) {
 
 namespace {
 
-/// As many independent stretches tell as much of a mean: n^2 / sum_ij w_ij.
+/// Equivalent number of independent stretches for a mean: n^2 / sum_ij w_ij.
 double independent_stretches(std::vector<double> times, double reach) {
   std::ranges::sort(times);
   const auto n = static_cast<double>(times.size());

@@ -40,7 +40,7 @@ double white_sd(const noise::ImuErrorModel& model, noise::Sensor sensor, double 
   return std::sqrt(density * rate_hz);
 }
 
-// Differences of neighbours: what a vehicle does within a sample is small, what shakes it is not.
+// Differences of adjacent samples: a vehicle's motion within a sample is small, vibration is not.
 double scatter(const record::ImuRecording& imu, const Eigen::Vector3d record::ImuSample::*increment) {
   std::vector<double> seconds;
   const auto n = static_cast<std::size_t>(std::max(2.0, imu.rate_hz));

@@ -8,14 +8,14 @@
 namespace coast::study {
 namespace {
 
-constexpr double kMinutes = 150.0;    // s that are looked at
-constexpr double kVelocitySd = 30.0;  // m/s, of a vehicle that nothing else is known of
+constexpr double kMinutes = 150.0;    // s that are used
+constexpr double kVelocitySd = 30.0;  // m/s, of a vehicle without other information
 
 bool ends_a_gap(const record::ImuRecording& imu, std::size_t i) {
   return imu.samples[i].t - imu.samples[i - 1].t > kLongGap + 1.0 / imu.rate_hz;
 }
 
-// Samples behind the gap that sample `at` ends, up to the next one.
+// Samples after the gap that ends with sample `at`, up to the next gap.
 record::ImuRecording stretch_behind(const record::ImuRecording& imu, std::size_t at) {
   record::ImuRecording stretch;
   stretch.source = imu.source;
@@ -33,7 +33,7 @@ record::GnssRecording fixes_between(const record::GnssRecording& gnss, geo::GpsT
   return between;
 }
 
-// The setup of a mission of its own, in which nothing is left to be found but the start.
+// The setup of a separate mission in which only the start is to be determined.
 Setup plain(const Setup& setup) {
   Setup own = setup;
   own.unstated = {};
@@ -43,7 +43,7 @@ Setup plain(const Setup& setup) {
   own.batch.reset();
   own.carrier.reset();
   own.refine_before.reset();
-  own.high_order_compensation = false;  // the recording was compensated
+  own.high_order_compensation = false;  // the recording is already compensated
   own.filter.auxiliary.time_offset_sd_s = own.filter.auxiliary.lever_arm_sd_m = 0.0;
   own.filter.knots_at.clear();
   return own;
@@ -67,7 +67,7 @@ std::optional<estimate::Restart> at_fix(const record::ImuRecording& imu, const r
   return restart;
 }
 
-// The start of a mission of its own, where it tells the heading better than what is known of how a body turns meanwhile.
+// The start of a separate mission, if its heading is better than the one propagated over the gap.
 std::optional<estimate::Restart> found_anew(const record::ImuRecording& imu, const record::GnssRecording& gnss,
                                             const Setup& setup, std::size_t at) {
   record::ImuRecording stretch = stretch_behind(imu, at);
@@ -103,7 +103,7 @@ std::vector<estimate::Restart> restarts_behind_gaps(const record::ImuRecording& 
   std::vector<estimate::Restart> restarts;
   for (std::size_t i = 1; i < imu.samples.size(); ++i) {
     if (!ends_a_gap(imu, i)) continue;
-    // Position first: the start may stand behind the first fixes, which a lost position would not survive.
+    // Position first: the start may be after the first fixes, which the filter would not survive with a lost position.
     const auto fix = at_fix(imu, gnss, setup.time_offset_s, setup.lever_arm_b, i);
     const auto anew = found_anew(imu, gnss, setup, i);
     if (fix && (!anew || fix->nav.t < anew->nav.t)) restarts.push_back(*fix);

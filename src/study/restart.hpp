@@ -1,5 +1,5 @@
 #pragma once
-// Behind a long gap of the IMU a mission begins anew; private to the room.
+// Restart of a mission after a long IMU gap; private to the room.
 
 #include <vector>
 
@@ -7,19 +7,19 @@
 
 namespace coast::study {
 
-inline constexpr double kLongGap = 1.0;  ///< s without samples, over which rates and forces at its ends tell nothing
+inline constexpr double kLongGap = 1.0;  ///< s without samples; rates and forces at its ends do not determine the motion
 
-/// Where a long gap ends: the position of the first fix behind it, and nothing of velocity and attitude. For a recording run
-/// backwards, too.
+/// End of a long gap: the position of the first fix after it, velocity and attitude unknown. Also for a time-reversed
+/// recording.
 /// @param time_offset_s  a fix tagged t is valid at t - offset
 [[nodiscard]] std::vector<estimate::Restart> restarts_at_fixes(const record::ImuRecording& imu,
                                                                const record::GnssRecording& gnss, double time_offset_s,
                                                                const Eigen::Vector3d& lever_arm_b);
 
-/// For each long gap what the minutes behind it tell of position, velocity and attitude, found as the start of a mission is.
-/// Where they do not show the attitude it is the fix alone.
-/// @param setup  with the noise, lever arm and time offset that are in use; no outage that is studied may be looked into:
-///               gaps behind `refine_before` have no restart
+/// For each long gap, position, velocity and attitude from the minutes after it, determined like the start of a mission. If the
+/// attitude cannot be determined, only the fix is used.
+/// @param setup  with the noise, lever arm and time offset in use; data of studied outages must not be used: gaps after
+///               `refine_before` have no restart
 [[nodiscard]] std::vector<estimate::Restart> restarts_behind_gaps(const record::ImuRecording& imu,
                                                                   const record::GnssRecording& gnss, const Setup& setup);
 

@@ -43,7 +43,7 @@ estimate::FilterState ReversedRun::mirrored(const estimate::FilterState& state, 
   return result;
 }
 
-// A span has its beginning and not its end; mirrored it would have it the other way round.
+// A span includes its beginning and not its end; in reversed time it would be the opposite.
 estimate::FilterOptions ReversedRun::mirrored(estimate::FilterOptions options) const {
   constexpr double kNext = 1e-9;  // s, the resolution of GpsTime
   for (estimate::Withheld& span : options.withheld)

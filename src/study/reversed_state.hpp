@@ -6,7 +6,7 @@
 
 namespace coast::study {
 
-/// View of a mission to a clock that runs backwards from `mirror`.
+/// View of a mission with time reversed about `mirror`.
 class ReversedRun {
  public:
   struct AlreadyReversed {};

@@ -13,7 +13,7 @@ namespace coast::study {
 
 namespace {
 
-/// What the batch solution has to say beside its states.
+/// Events on the batch solution in addition to its states.
 void note_batch(const estimate::BatchSolution& batch, const std::vector<estimate::KnotMeasurement>& measurements,
                 record::Events& events) {
   constexpr double kDoubted = 0.5;
@@ -40,7 +40,7 @@ void note_batch(const estimate::BatchSolution& batch, const std::vector<estimate
                       1});
 }
 
-// The solution is about the lever arm and the time offset that the preparation found; people ask what is wrong with theirs.
+// The solution is relative to the lever arm and time offset found by the preparation; users need differences from their own.
 void tell_against_configuration(const PreparedMission& mission, std::vector<estimate::MissionUnknown>& unknowns) {
   const Eigen::Vector3d moved = mission.mission().lever_arm_b - mission.setup().lever_arm_b;
   const std::array<const char*, 3> components{"lever_arm forward", "lever_arm right", "lever_arm down"};

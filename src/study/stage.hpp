@@ -5,7 +5,7 @@
 
 namespace coast::study {
 
-/// Tells how far `what` is. `progress` must outlive it; empty where that is.
+/// Reports the progress of `what`. `progress` must outlive it; empty if `progress` is.
 [[nodiscard]] inline std::function<void(double)> stage(const Progress& progress, const char* what) {
   if (!progress) return {};
   return [&progress, what](double fraction) { progress(what, fraction); };

@@ -1,4 +1,4 @@
-// What the configuration leaves to the data: each is tested, and taken where the data show it.
+// Values left to the data by the configuration: each is tested, and used if the data are significant.
 
 #include <fmt/format.h>
 
@@ -15,36 +15,36 @@ namespace coast::study {
 
 namespace {
 
-// Where the fit of the noise ended on bounds, and what each of them says; empty where it did not.
+// The bounds on which the fit of the noise ended, and their meaning; empty if there are none.
 std::string bounds_told(const estimate::NoiseFit& fit) {
   std::string none, other;
   for (std::size_t i = 0; i < fit.bounds.size(); ++i) {
     const std::string& name = fit.names[i];
     if (fit.bounds[i] == estimate::Bound::kNone) continue;
-    // Of an amplitude or a factor on GNSS sigmas nothing is left: an answer. Of a time or of the IMU's noise it is none.
+    // An amplitude or a factor on GNSS sigmas at zero is a result; a time or the IMU's noise at its bound is not.
     const bool vanishes = name.starts_with("gnss_scale") || name.ends_with("_m");
     std::string& list = fit.bounds[i] == estimate::Bound::kLower && vanishes ? none : other;
     list += (list.empty() ? "" : ", ") + name;
   }
   std::string text;
   if (!none.empty())
-    text = fmt::format("The fit of the noise leaves nothing of {}: the other errors of the fixes account for all of it.", none);
+    text = fmt::format("The noise fit reduces {} to zero: the other errors of the fixes account for all of it.", none);
   if (!other.empty())
-    text += fmt::format("{}The fit of the noise ends on a bound of {}: the recording has errors of another kind.",
+    text += fmt::format("{}The noise fit ends at a bound of {}: the recording has errors that are not of the fitted kinds.",
                         text.empty() ? "" : " ", other);
   return text;
 }
 
 }  // namespace
 
-// Turns tell a shift of the times to some 0.05 s, and now and then a false one. It is taken where the filter finds the fixes
-// likelier by it; the gate is open, so that both see the same fixes.
+// Turns give a shift of the times to some 0.05 s, and sometimes a false one. It is used if the filter finds the fixes likelier
+// with it; the gate is open, so that both use the same fixes.
 void PreparedMission::choose_time_offset(const Progress& progress) {
   if (!setup_.unstated.time_offset || setup_.start || setup_.unstated.time_offset_seen_s == 0.0) return;
-  constexpr double kCoarse = 0.4;  // s: the state of the offset finds what is nearer
+  constexpr double kCoarse = 0.4;  // s: the state of the offset estimates smaller ones
   const estimate::FilterOptions stated = setup_.filter;
   const auto log_likelihood_at = [&](double offset) {
-    setup_.filter = stated;  // what one candidate assumed is not the next one's
+    setup_.filter = stated;  // assumptions of one candidate do not apply to the next
     setup_.filter.gate_probability = 0.0;
     setup_.time_offset_s = mission_->time_offset_s = offset;
     try {
@@ -56,7 +56,7 @@ void PreparedMission::choose_time_offset(const Progress& progress) {
       return -std::numeric_limits<double>::infinity();
     }
   };
-  // Between fixes the course is not seen: a neighbouring maximum lies an interval of theirs away.
+  // Between fixes the course is unknown: a neighbouring maximum is one fix interval away.
   const double seen = setup_.unstated.time_offset_seen_s;
   const double interval = fix_interval_s();
   double best = 0.0, most = log_likelihood_at(0.0);
@@ -78,8 +78,8 @@ void PreparedMission::take_out_velocity_lag() {
   if (velocity_lag_) advance_velocities(gnss_, *velocity_lag_);
 }
 
-// Sigmas of innovations that do not fit say that noise is stated wrongly, whatever the data sheet; so does an IMU whose errors
-// the model holds for impossible.
+// If the sigmas of innovations do not fit, noise is stated wrongly, whatever the data sheet; also if the IMU's errors
+// are impossible by the model.
 void PreparedMission::test_noise() {
   constexpr double kSmallest = 0.7, kLargest = 1.4;  // of the normalised innovations squared over their expectation
   constexpr double kRefused = 0.05;
@@ -100,7 +100,7 @@ void PreparedMission::test_noise() {
   const auto innovations = static_cast<double>(seen.innovations.size());
   const auto refused = static_cast<double>(std::ranges::count(seen.innovations, false, &estimate::InnovationRecord::used));
   const double ratio = nis_over_expected(seen.innovations);
-  // Innovations that are too small are the fixes' stated noise: no IMU noise makes them so.
+  // Innovations that are too small are caused by the fixes' stated noise: no IMU noise does this.
   const double by_chance = kScatter * std::sqrt(2.0 / (3.0 * std::max(innovations, 1.0)));  // chi-square of three each
   const bool fits = (ratio > std::min(kSmallest, 1.0 - by_chance) || !choice.gnss_scale) &&
                     ratio < std::max(kLargest, 1.0 + by_chance) && refused < kRefused * innovations;
@@ -114,14 +114,14 @@ void PreparedMission::test_noise() {
   if (!choice.imu_white_noise || !has_gain_errors(setup_.model)) return;
   if (vibration_over_white_noise(imu_, setup_.model) < kShaken) return;
   setup_.model = without_gain_errors(setup_.model, imu_.rate_hz);
-  start_sensor_errors_.resize(0);  // they were of the other layout
+  start_sensor_errors_.resize(0);  // they belonged to the other layout
   gain_errors_left_out_ = true;
 }
 
-// EM on the drift of each axis, about the noise that was fitted.
+// EM on the drift of each axis, with the fitted noise.
 void PreparedMission::adapt_drift() {
   constexpr double kContradicted = 2.0;  // times the stated sigma
-  constexpr double kLargest = 100.0;     // more is no drift of a bias but another mistake
+  constexpr double kLargest = 100.0;     // larger values are no drift of a bias but another mistake
   constexpr double kSettled = 1.2;
   constexpr int kRounds = 4;
   if (!setup_.unstated.noise.imu_white_noise) return;
@@ -146,7 +146,7 @@ void PreparedMission::adapt_drift() {
 
 void PreparedMission::note_adaptations() {
   constexpr double kNoted = 1e-3;     // s, m
-  constexpr double kMeasured = 0.15;  // m: what a tape measure misses is not worth a warning
+  constexpr double kMeasured = 0.15;  // m: errors of a tape measure need no warning
   using Severity = record::Event::Severity;
   const auto note = [this](const char* kind, std::string text, Severity severity = Severity::kInfo) {
     adaptations_.push_back({severity, kind, std::move(text), std::nullopt, 1});
@@ -157,7 +157,7 @@ void PreparedMission::note_adaptations() {
         fmt::format("The recording shows a time offset, which the run file does not state: gnss.time_offset_s: {:.4f} is used.",
                     mission_->time_offset_s));
   if (const Eigen::Vector3d moved = mission_->lever_arm_b - setup_.lever_arm_b; tested_.lever_arm && moved.norm() > kNoted) {
-    // Zero is what one writes who has not measured it.
+    // Zero usually means not measured.
     const bool contradicted = !setup_.lever_arm_b.isZero() && moved.norm() > kMeasured;
     const Eigen::Vector3d &found = mission_->lever_arm_b, &stated = setup_.lever_arm_b;
     note(contradicted ? "lever_arm_contradicted" : "lever_arm_found",
@@ -170,23 +170,24 @@ void PreparedMission::note_adaptations() {
   }
   if (velocity_lag_)
     note("velocity_lag_removed",
-         fmt::format("GNSS velocities come {:.2f} s after the positions of the same file; they were moved to them.",
-                     *velocity_lag_));
+         fmt::format("GNSS velocities lag the positions of the same file by {:.2f} s; the lag was removed.", *velocity_lag_));
   if (gain_errors_left_out_)
     note("gain_errors_left_out",
-         "The IMU shakes far beyond its stated noise: scale factors and misalignments cannot be told from the shaking and are "
-         "left "
-         "out of the error model (imu.noise: {without_gain_errors: true}).");
+         "The IMU vibrates far above its stated noise: scale factors and misalignments cannot be separated from the vibration "
+         "and "
+         "are left out of the error model (imu.noise: {without_gain_errors: true}).");
   if (heading_assumed_)
-    note("heading_assumed",
-         "Motion does not show the heading; it rests on the assumption that the body's x axis points where the vehicle goes "
-         "(vehicle: car). Where it does not, give the attitude under start:.");
+    note(
+        "heading_assumed",
+        "Motion does not show the heading; it rests on the assumption that the body's x axis points in the direction of travel "
+        "(vehicle: car). Otherwise give the attitude under `start:`.");
   if (drift_.largest() > 1.0)
     note("bias_drift_adapted",
-         fmt::format("Biases drift more than the error model allows: gyro x, y, z {:.3g}, {:.3g}, {:.3g} times its sigma, "
-                     "accelerometer {:.3g}, {:.3g}, {:.3g} times; taken so (imu.noise.drift_factors). `noise: stated` keeps "
-                     "what is stated.",
-                     drift_.gyro.x(), drift_.gyro.y(), drift_.gyro.z(), drift_.accel.x(), drift_.accel.y(), drift_.accel.z()));
+         fmt::format(
+             "Biases drift more than the error model allows: gyro x, y, z {:.3g}, {:.3g}, {:.3g} times its sigma, "
+             "accelerometer {:.3g}, {:.3g}, {:.3g} times; used in this run (imu.noise.drift_factors). `noise: stated` keeps "
+             "what is stated.",
+             drift_.gyro.x(), drift_.gyro.y(), drift_.gyro.z(), drift_.accel.x(), drift_.accel.y(), drift_.accel.z()));
   if (!noise_fit_) return;
   if (const std::string text = bounds_told(*noise_fit_); !text.empty()) note("noise_on_bound", text);
   if (!noise_ratio_) return;
@@ -195,7 +196,7 @@ void PreparedMission::note_adaptations() {
        fmt::format(
            "Squared innovations are {:.2g} times what the stated noise predicts. Fitted and used in its place: gyro noise "
            "times {:.3g}, accelerometer noise times {:.3g}, GNSS sigmas times {:.3g} horizontally and {:.3g} vertically "
-           "with errors of {:.2g} and {:.2g} m that last {:.3g} s. `noise: stated` keeps what is stated.",
+           "with correlated errors of {:.2g} and {:.2g} m, correlation time {:.3g} s. `noise: stated` keeps what is stated.",
            *noise_ratio_, a.gyro_factor, a.accel_factor, a.gnss_scale.horizontal, a.gnss_scale.vertical,
            a.correlated_gnss.horizontal_m, a.correlated_gnss.vertical_m, a.correlated_gnss.time_s));
 }

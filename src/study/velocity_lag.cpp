@@ -29,7 +29,7 @@ struct Displacement {
   std::size_t fix = 0;
   geo::GpsTime middle;
   double dt = 0.0;
-  Eigen::Vector3d v_n;  ///< mean velocity by the positions
+  Eigen::Vector3d v_n;  ///< mean velocity from the positions
 };
 
 std::vector<Displacement> displacements(const std::vector<record::GnssFix>& fixes) {

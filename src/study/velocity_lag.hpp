@@ -1,5 +1,5 @@
 #pragma once
-// Receivers that smooth their velocities deliver them late against their own positions.
+// Delay of smoothed receiver velocities relative to the receiver's positions.
 
 #include <optional>
 
@@ -7,12 +7,12 @@
 
 namespace coast::study {
 
-/// By how much velocities lag the positions of the same recording, s; nothing where they do not, or where it cannot be seen:
-/// the lag at which the mean velocity between two fixes comes nearest to the displacement, where it leaves at most 0.7 of the
-/// squared residuals at no lag, and 0.03 s at least.
+/// Delay of velocities relative to the positions of the same recording, s; none if there is none, or it is not observable:
+/// the lag at which the mean velocity between two fixes is closest to the displacement, if it leaves at most 0.7 of the
+/// squared residuals at no lag, and is at least 0.03 s.
 [[nodiscard]] std::optional<double> velocity_lag(const record::GnssRecording& gnss);
 
-/// Moves the velocities by `lag_s` towards earlier times, by linear interpolation; those at the end without a neighbour go.
+/// Moves the velocities by `lag_s` to earlier times, by linear interpolation; those at the end without a neighbour are removed.
 void advance_velocities(record::GnssRecording& gnss, double lag_s);
 
 }  // namespace coast::study

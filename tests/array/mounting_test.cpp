@@ -84,6 +84,15 @@ TEST(Mounting, ErrorsAreThoseStated) {
   EXPECT_LT(shifts / count, 2.0);
 }
 
+TEST(Mounting, PlacesDoNotDependOnTheBlocks) {
+  // Within a block of 0.2 s these rates change by a quarter: with the squares of their means places differ by millimetres.
+  const RoughlyKnown known(2);
+  const Signals signals = analytic_array({.rate = 2.0, .force = 5.0, .frequency = 0.6}, known.truth, 0.01, 6000);
+  const RefinedMounting fine = refine_mounting(signals, known.stated, {.block_s = 0.02});
+  const RefinedMounting coarse = refine_mounting(signals, known.stated, {.block_s = 0.2});
+  for (std::size_t k = 0; k < 4; ++k) EXPECT_LT((coarse.sensors[k].frame.r_b - fine.sensors[k].frame.r_b).norm(), 5e-4) << k;
+}
+
 TEST(Mounting, PlacesStayWhereNothingTurns) {
   const RoughlyKnown known(4, 0.03, 0.02);
   Signals signals = analytic_array({.rate = 0.0, .force = 5.0, .frequency = 0.4}, known.truth, 0.01, 3000);

@@ -4,14 +4,16 @@
 
 #include <nlohmann/json.hpp>
 
-#include "array_study_config.hpp"
-#include "commands.hpp"
+#include "coast/jobs/array_study.hpp"
+#include "coast/jobs/file_kind.hpp"
 #include "program.hpp"
 #include "support/schema.hpp"
 #include "support/support.hpp"
 
 namespace coast::cli {
 namespace {
+
+using namespace jobs;
 
 namespace fs = std::filesystem;
 using nlohmann::json;
@@ -87,7 +89,7 @@ TEST(ArrayStudy, OfDefectsCountsThem) {
 TEST(ArrayStudy, ShippedOnesAndTheExampleAreRead) {
   std::size_t studies = 0;
   for (const auto& entry : fs::directory_iterator(fs::path(COAST_SOURCE_DIR) / "configs" / "studies")) {
-    if (!is_array_study(entry.path())) continue;
+    if (!names_schema(entry.path(), "coast.array_study/")) continue;
     test::expect_valid("array_study", test::yaml_as_json(text_of(entry.path())));
     EXPECT_GE(read_array_study(entry.path()).runs, 40U) << entry.path();
     ++studies;

@@ -8,15 +8,16 @@
 #include <nlohmann/json.hpp>
 #include <random>
 
-#include "calibration_config.hpp"
-#include "calibration_units.hpp"
-#include "commands.hpp"
+#include "calibrate/units.hpp"
+#include "coast/jobs/calibrate.hpp"
 #include "program.hpp"
 #include "support/schema.hpp"
 #include "support/support.hpp"
 
 namespace coast::cli {
 namespace {
+
+using namespace jobs;
 
 namespace fs = std::filesystem;
 using nlohmann::json;
@@ -347,7 +348,7 @@ TEST(Calibrate, Adis16405HasThePublishedAllanCurve) {
   EXPECT_LT(0.0409 * kDegree, allan["upper_95"][at].get<double>());
   // Nothing but the gyro was calibrated, and the file that a filter reads says so.
   const std::string model = text_of(folder.path() / "out" / "error_model.yaml");
-  EXPECT_NE(model.find("# not calibrated: no error at all"), std::string::npos);
+  EXPECT_NE(model.find("# not calibrated: zero error"), std::string::npos);
   EXPECT_NE(model.find("# not calibrated: taken from axis x"), std::string::npos);
 }
 

@@ -11,14 +11,15 @@
 #include <nlohmann/json.hpp>
 #include <sstream>
 
-#include "load.hpp"
+#include "coast/jobs/run_file.hpp"
 #include "program.hpp"
-#include "run_config.hpp"
 #include "support/schema.hpp"
 #include "support/support.hpp"
 
 namespace coast::cli {
 namespace {
+
+using namespace jobs;
 
 namespace fs = std::filesystem;
 
@@ -104,7 +105,7 @@ TEST(Commands, ProcessesWhatSimulateWroteAndRepeatsItFromTheResolvedFile) {
 
 TEST(Commands, RepeatsAFitOfNoiseAndTimeOffsetFromTheResolvedFile) {
   const test::TemporaryDirectory folder;
-  const fs::path made = simulated_recording(kShortDrive, folder.path());
+  const fs::path made = simulated_recording(test::kShortDrive, folder.path());
   std::string text = text_of(made / "run.yaml");
   const auto insert_after = [&text](const std::string& key, const std::string& inserted) {
     const auto at = text.find(key);
@@ -321,7 +322,7 @@ TEST(Load, SaysThatLeapSecondsHaveExpired) {
   std::string imu = "time_s,gyro_x_radps,gyro_y_radps,gyro_z_radps,accel_x_mps2,accel_y_mps2,accel_z_mps2\n";
   for (int i = 0; i < 200; ++i) imu += fmt::format("{:.2f},0,0,0,0,0,-9.8\n", 345600.0 + 0.01 * i);
   write(folder.path() / "imu.csv", imu);
-  write(folder.path() / "model.yaml", kTestModel);
+  write(folder.path() / "model.yaml", test::kTestModel);
   const auto events_of = [&](std::int64_t unix_s) {
     std::string gnss;
     for (int i = 0; i < 3; ++i) gnss += fmt::format("{},46.5,6.5,400\n", unix_s + i);
@@ -330,7 +331,7 @@ TEST(Load, SaysThatLeapSecondsHaveExpired) {
         folder.path() / "run.yaml",
         "imu: {file: imu.csv, gps_week: 6260, error_model: model.yaml, lever_arm_m: [0, 0, 0]}\n"
         "gnss: {file: gnss.csv, format: csv, columns: {time: 1, position: [2, 3, 4]}, sd_m: [1, 1, 1], time: {kind: unix}}\n");
-    return load(read_run_config(folder.path() / "run.yaml"), [](const char*, double) {}).inspection_events;
+    return load(read_run_config(folder.path() / "run.yaml"), {}).inspection_events;
   };
   const auto expired = [](const record::Events& found) {
     return std::ranges::count_if(found, [](const record::Event& event) { return event.kind == "leap_seconds_expired"; });
@@ -344,7 +345,7 @@ TEST(Recordings, EveryShippedRunFileFitsItsRecording) {
   for (const fs::path& file : yaml_files("recordings")) {
     if (file.stem().string().ends_with("-imu")) continue;  // error models
     const RunConfig config = read_run_config(file);
-    const Recordings recordings = load(config, [](const char*, double) {});
+    const Recordings recordings = load(config, {});
     EXPECT_GT(recordings.imu.samples.size(), 10000U) << file;
     EXPECT_FALSE(recordings.inspection.empty()) << file;
   }

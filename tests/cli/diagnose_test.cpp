@@ -9,13 +9,15 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
-#include "diagnosis_json.hpp"
+#include "diagnose/result.hpp"
 #include "program.hpp"
 #include "support/schema.hpp"
 #include "support/support.hpp"
 
 namespace coast::cli {
 namespace {
+
+using namespace jobs;
 
 namespace fs = std::filesystem;
 
@@ -157,13 +159,12 @@ TEST(DiagnoseCommand, TakesNoSimulationThatIsNotThere) {
 }
 
 TEST(DiagnosisJson, SaysWhyAnEffectWasGivenUp) {
-  diagnose::Diagnosis diagnosis;
+  DiagnosisResult result;
+  diagnose::Diagnosis& diagnosis = result.diagnosis;
   diagnosis.runs = 1;
   diagnosis.rejected = {{"harmonic_disturbance accel y", diagnose::Rejected::Reason::kHeldOut},
                         {"bias_step gyro x", diagnose::Rejected::Reason::kOutages}};
-  diagnose::MissionInput input;
-  input.imu.samples.resize(2);
-  const auto written = nlohmann::json::parse(diagnosis_json(diagnosis, input, {}));
+  const auto written = nlohmann::json::parse(diagnosis_json(result));
   test::expect_valid("diagnosis", written);
   const nlohmann::json& rejected = written.at("verification").at("rejected");
   ASSERT_EQ(rejected.size(), 2U);

@@ -9,14 +9,16 @@
 #include <fstream>
 #include <nlohmann/json.hpp>
 
+#include "coast/jobs/file_kind.hpp"
 #include "coast/record/error.hpp"
-#include "commands.hpp"
-#include "estimator_study_result.hpp"
+#include "estimator_study/result.hpp"
 #include "support/schema.hpp"
 #include "support/support.hpp"
 
 namespace coast::cli {
 namespace {
+
+using namespace jobs;
 
 namespace fs = std::filesystem;
 using nlohmann::json;
@@ -148,7 +150,7 @@ TEST(EstimatorStudyConfig, FirstOrderFormsBecomeTheExactProcesses) {
 TEST(EstimatorStudyConfig, ShippedStudiesAndTheExampleAreRead) {
   std::size_t studies = 0;
   for (const auto& entry : fs::directory_iterator(fs::path(COAST_SOURCE_DIR) / "configs" / "studies")) {
-    if (!is_estimator_study(entry.path())) continue;
+    if (!names_schema(entry.path(), "coast.estimator_study/")) continue;
     EXPECT_GE(read_estimator_study(entry.path()).study.runs, 24U) << entry.path();
     ++studies;
   }

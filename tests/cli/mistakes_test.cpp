@@ -89,7 +89,7 @@ TEST_P(Mistakes, AreAnsweredAsTheirFileSays) {
     if (!data) GTEST_SKIP() << "COAST_DATA is not set";
     place = rinex_of(*data, folder.path());
   } else {
-    place = simulated_recording(kShortDrive, folder.path());
+    place = simulated_recording(test::kShortDrive, folder.path());
     write(place / "run.yaml", kShortestRun);
   }
   if (const auto edit = file.find("edit")) {

@@ -12,13 +12,15 @@
 #include <sstream>
 
 #include "coast/io/yaml.hpp"
+#include "coast/jobs/outage.hpp"
 #include "program.hpp"
-#include "study_config.hpp"
 #include "support/schema.hpp"
 #include "support/support.hpp"
 
 namespace coast::cli {
 namespace {
+
+using namespace jobs;
 
 namespace fs = std::filesystem;
 
@@ -133,7 +135,7 @@ TEST(OutageStudy, EveryShippedStudyIsRead) {
   std::size_t studies = 0;
   for (const auto& entry : fs::directory_iterator(fs::path(COAST_SOURCE_DIR) / "configs" / "studies")) {
     if (text_of(entry.path()).find("coast.study/1") == std::string::npos) continue;
-    const auto study = std::get<EnsembleStudy>(read_study(entry.path()));
+    const auto study = std::get<EnsembleStudy>(read_outage(entry.path()));
     EXPECT_EQ(study.plan.seeds, 100U) << entry.path();
     EXPECT_EQ(study.plan.cases.size(), 4U) << entry.path();
     ++studies;
@@ -205,10 +207,10 @@ error_models:
   EXPECT_NEAR(predicted(2), predicted(0), 0.2 * predicted(0));
 }
 
-/// A drive that studies simulate; its error model is kTestModel.
+/// A drive that studies simulate; its error model is test::kTestModel.
 fs::path ensemble_study(const fs::path& folder, const std::string& keys) {
   write(folder / "scenario.yaml", kStudiedDrive);
-  write(folder / "model.yaml", kTestModel);
+  write(folder / "model.yaml", test::kTestModel);
   write(folder / "study.yaml", "schema: coast.study/1\nscenario: scenario.yaml\nseeds: {first: 3, count: 2}\n" + keys);
   return folder / "study.yaml";
 }

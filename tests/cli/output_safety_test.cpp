@@ -48,8 +48,8 @@ TEST(OutputSafety, SimulateLeavesAnImuFileOfTheUserAlone) {
   const test::TemporaryDirectory folder;
   fs::create_directories(folder.path() / "rec");
   write(folder.path() / "rec" / "imu.csv", kTable);
-  write(folder.path() / "scenario.yaml", kShortDrive);
-  write(folder.path() / "model.yaml", kTestModel);
+  write(folder.path() / "scenario.yaml", test::kShortDrive);
+  write(folder.path() / "model.yaml", test::kTestModel);
   const Outcome outcome = simulated_again(folder.path());
   EXPECT_EQ(outcome.status, 2);
   EXPECT_TRUE(says(outcome, "rec/imu.csv: this file would be replaced")) << outcome.error;
@@ -59,7 +59,7 @@ TEST(OutputSafety, SimulateLeavesAnImuFileOfTheUserAlone) {
 
 TEST(OutputSafety, ReplacesWhatItWroteItselfUnlessItWasChanged) {
   const test::TemporaryDirectory folder;
-  const fs::path made = simulated_recording(kShortDrive, folder.path());
+  const fs::path made = simulated_recording(test::kShortDrive, folder.path());
   EXPECT_EQ(simulated_again(folder.path()).status, 0);
   fs::remove(made / ".coast-results");  // as an earlier version left it
   const Outcome unmarked = simulated_again(folder.path());
@@ -73,7 +73,7 @@ TEST(OutputSafety, ReplacesWhatItWroteItselfUnlessItWasChanged) {
 TEST(OutputSafety, NoJobReplacesItsInput) {
   const test::TemporaryDirectory folder;
   const std::string here = folder.path().string();
-  const fs::path made = simulated_recording(kShortDrive, folder.path());
+  const fs::path made = simulated_recording(test::kShortDrive, folder.path());
   const std::string imu = text_of(made / "imu.csv");
   write(made / "pair.yaml",
         "schema: coast.array/1\nimus:\n  - {name: a, file: imu.csv, gps_week: 2374, error_model: error_model.yaml}\n"
@@ -84,17 +84,17 @@ TEST(OutputSafety, NoJobReplacesItsInput) {
   EXPECT_EQ(text_of(made / "imu.csv"), imu);
 
   write(folder.path() / "imu.csv", imu);
-  write(folder.path() / "error_model.yaml", kTestModel);
+  write(folder.path() / "error_model.yaml", test::kTestModel);
   const Outcome calibrate = run(fmt::format("calibrate '{0}/imu.csv' --out '{0}'", here), folder.path());
   EXPECT_EQ(calibrate.status, 2);
   EXPECT_TRUE(says(calibrate, "error_model.yaml: this file would be replaced")) << calibrate.error;
-  EXPECT_EQ(text_of(folder.path() / "error_model.yaml"), kTestModel);
+  EXPECT_EQ(text_of(folder.path() / "error_model.yaml"), test::kTestModel);
 }
 
 TEST(OutputSafety, LostOutputIsAnError) {
   if (!fs::exists("/dev/full")) GTEST_SKIP() << "no /dev/full here";
   const test::TemporaryDirectory folder;
-  const fs::path truth = simulated_recording(kShortDrive, folder.path()) / "truth.nav";
+  const fs::path truth = simulated_recording(test::kShortDrive, folder.path()) / "truth.nav";
   const std::string compare = fmt::format("compare '{0}' '{0}'", truth.string());
   for (const std::string& command : {std::string("--help"), compare})
     for (const char* lost : {">/dev/full", ">&-"}) {
@@ -108,7 +108,7 @@ TEST(OutputSafety, LostOutputIsAnError) {
 
 TEST(OutputSafety, TheNextRunRemovesThePartsOfDeadProcesses) {
   const test::TemporaryDirectory folder;
-  const fs::path made = simulated_recording(kShortDrive, folder.path());
+  const fs::path made = simulated_recording(test::kShortDrive, folder.path());
   const std::string dead = fmt::format(".part-{}", dead_process());
   const std::string alive = fmt::format("imu.csv.part-{}", ::getpid());
   for (const std::string& name : {"imu.csv" + dead, "mine.csv" + dead, alive}) write(made / name, "half");
@@ -121,10 +121,10 @@ TEST(OutputSafety, TheNextRunRemovesThePartsOfDeadProcesses) {
 
 TEST(OutputSafety, AnInterruptedRunLeavesNoParts) {
   const test::TemporaryDirectory folder;
-  std::string text = kShortDrive;
+  std::string text = test::kShortDrive;
   text.replace(text.find("duration_s: 220"), 15, "duration_s: 6000");
   write(folder.path() / "scenario.yaml", text);
-  write(folder.path() / "model.yaml", kTestModel);
+  write(folder.path() / "model.yaml", test::kTestModel);
   const std::string out = (folder.path() / "rec").string();
   const std::string log = (folder.path() / "log.txt").string();
   // Ends it as soon as a part is there.
@@ -150,7 +150,7 @@ int killed_between_results(const std::string& job, const fs::path& out, const fs
 
 TEST(OutputSafety, ResultsOfTwoRunsAreKnown) {
   const test::TemporaryDirectory folder;
-  const fs::path made = simulated_recording(kShortDrive, folder.path());
+  const fs::path made = simulated_recording(test::kShortDrive, folder.path());
   const fs::path out = folder.path() / "out";
   write(made / "sweep.yaml", text_of(made / "run.yaml") + "outages: {every_s: 2, first_s: 60, durations_s: [10, 20, 30]}\n");
   const std::string job = fmt::format("process '{}' --out '{}'", (made / "sweep.yaml").string(), out.string());
@@ -182,7 +182,7 @@ TEST(OutputSafety, ResultsOfTwoRunsAreKnown) {
 TEST(OutputSafety, EveryJobWritesTheFileThatClosesItsResultsLast) {
   const test::TemporaryDirectory folder;
   const std::string here = folder.path().string();
-  const fs::path made = simulated_recording(kShortDrive, folder.path());
+  const fs::path made = simulated_recording(test::kShortDrive, folder.path());
   write(folder.path() / "study.yaml",
         "schema: coast.study/1\nrun: rec/run.yaml\nsweep: {every_s: 60, first_s: 100, durations_s: [10]}\n"
         "error_models:\n  - {name: test, file: model.yaml}\n");
@@ -232,7 +232,7 @@ TEST_P(OtherKinds, AreNamedWhereATableOrARunFileIsExpected) {
   const auto [content, named] = GetParam();
   write(folder.path() / "other", content);
   write(folder.path() / "imu.csv", kTable);
-  write(folder.path() / "model.yaml", kTestModel);
+  write(folder.path() / "model.yaml", test::kTestModel);
   const auto expect_named = [&, word = named](const std::string& file) {
     const Outcome outcome = run(fmt::format("process '{}'", (folder.path() / file).string()), folder.path());
     EXPECT_EQ(outcome.status, 2);

@@ -5,14 +5,15 @@
 #include <nlohmann/json.hpp>
 
 #include "coast/io/gnss.hpp"
-#include "commands.hpp"
-#include "ppk_config.hpp"
+#include "coast/jobs/ppk.hpp"
 #include "program.hpp"
 #include "support/schema.hpp"
 #include "support/support.hpp"
 
 namespace coast::cli {
 namespace {
+
+using namespace jobs;
 
 namespace fs = std::filesystem;
 using nlohmann::json;

@@ -65,7 +65,7 @@ TEST(Progress, QuietTellsNothing) {
 
 TEST(Progress, JobsTellTheirStages) {
   const test::TemporaryDirectory folder;
-  const std::filesystem::path run_yaml = simulated_recording(kShortDrive, folder.path()) / "run.yaml";
+  const std::filesystem::path run_yaml = simulated_recording(test::kShortDrive, folder.path()) / "run.yaml";
   write(folder.path() / "study.yaml",
         "schema: coast.study/1\nrun: rec/run.yaml\nsweep: {every_s: 60, first_s: 100, durations_s: [10]}\n"
         "error_models:\n  - {name: test, file: model.yaml}\n");

@@ -4,14 +4,15 @@
 
 #include <nlohmann/json.hpp>
 
-#include "array_config.hpp"
-#include "commands.hpp"
+#include "coast/jobs/synth.hpp"
 #include "program.hpp"
 #include "support/schema.hpp"
 #include "support/support.hpp"
 
 namespace coast::cli {
 namespace {
+
+using namespace jobs;
 
 namespace fs = std::filesystem;
 using nlohmann::json;
@@ -196,7 +197,7 @@ TEST(SynthExample, IsThatOfItsSchema) {
   test::expect_valid("array", test::schema("array").at("examples").at(0));
   const test::TemporaryDirectory folder;
   write(folder.path() / "array.yaml", array_example(""));
-  const ArrayConfig config = read_array_config(folder.path() / "array.yaml");
+  const ArrayConfig config = read_synth(folder.path() / "array.yaml");
   EXPECT_EQ(config.imus.size(), 3U);
   EXPECT_EQ(config.merge.merge, array::Merge::kCorrected);
   ASSERT_EQ(run("synth --help", folder.path()).status, 0);

@@ -306,6 +306,11 @@ TEST(Diagnosis, ARelationThatHasANameIsToldByIt) {
   const Finding* f = only(d, "gyro_g2_sensitivity", "xx");
   ASSERT_NE(f, nullptr) << names(d);
   EXPECT_NEAR(f->value, kCoefficient, 4.0 * f->sd);
+  const auto is_it = [&](const auto& one) {
+    return one.hypothesis.effect == f->hypothesis.effect && one.hypothesis.axis == f->hypothesis.axis;
+  };
+  EXPECT_TRUE(std::ranges::none_of(d.not_observable, is_it));
+  EXPECT_TRUE(std::ranges::none_of(d.detectable_not_found, is_it));
 }
 
 /// The base 0.3 m too far north and 0.2 m too high, the reference free of errors.
@@ -330,7 +335,7 @@ TEST(Diagnosis, AReferenceShowsThatTheBaseIsOff) {
   }
   EXPECT_FALSE(diagnose::diagnose(recorded.input, kWithoutTwins, {}).reference_used);
 
-  // Taken out as a file names it.
+  // SelectedEffect out as a file names it.
   std::vector<NamedEffect> named;
   for (const Finding& f : d.findings)
     named.push_back({.effect = f.hypothesis.effect, .axis = f.hypothesis.axis, .value = f.value, .from_s = {}, .to_s = {}});

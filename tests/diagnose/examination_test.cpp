@@ -39,7 +39,7 @@ class Examined {
                              {.draws = draws, .started = started});
   }
   /// Of a filter that knows of the effects, from the same start.
-  [[nodiscard]] double log_likelihood(const std::vector<Taken>& taken) const {
+  [[nodiscard]] double log_likelihood(const std::vector<SelectedEffect>& taken) const {
     MissionInput with = without(taken, input_, hypotheses_, path_, mission_.mission(), solution_.filter->layout());
     const study::PreparedMission mission(std::move(with.imu), std::move(with.gnss), std::move(with.setup), {});
     const estimate::ForwardFilter filter(mission.mission(), mission.model(), mission.options());

@@ -1,24 +1,24 @@
-// Simulates a shipped scenario without sensor errors and integrates what its IMU recorded: how far is the end from the truth?
-#include <coast/ins/strapdown.hpp>
-#include <coast/io/yaml.hpp>
-#include <coast/simulate/scenario.hpp>
+// Simulates a shipped scenario, processes its recording in memory, and asks: how far is the smoothed end from the truth?
+#include <coast/jobs/process.hpp>
+#include <coast/jobs/simulate.hpp>
 #include <cstdio>
 
 int main(int argc, char** argv) {
   if (argc != 2) return 2;
-  auto scenario = coast::simulate::Scenario::from(coast::io::load_yaml(argv[1]), coast::io::load_yaml);
-  scenario.error_model.reset();
-  const auto mission = coast::simulate::simulate(scenario);
+  const coast::jobs::SimulationConfig simulation = coast::jobs::read_simulate(argv[1]);
+  const coast::simulate::SimulatedMission simulated = coast::jobs::simulate(simulation, {}).mission;
 
-  coast::ins::Strapdown strapdown(mission.truth.states.front());
-  coast::ins::RawIncrement previous;
-  for (const auto& sample : mission.imu.samples) {
-    const coast::ins::RawIncrement increment{sample.dt, sample.dtheta, sample.dv};
-    strapdown.step(coast::ins::compensate_two_sample(previous, increment));
-    previous = increment;
-  }
-  const double drift = (strapdown.state().r_eb_e - mission.truth.states.back().r_eb_e).norm();
-  std::printf("%zu samples, %.4f m from the truth\n", mission.imu.samples.size(), drift);
-  // tests/simulate/strapdown_truth_test.cpp holds the integration to its bounds; here a wrong link or a wrong flag would show.
-  return drift < 1.0 ? 0 : 1;
+  coast::jobs::RunConfig run;
+  run.setup.model = *simulation.scenario.error_model;
+  run.setup.lever_arm_b = simulation.scenario.gnss.lever_arm_b;
+  coast::jobs::Recordings recordings;
+  recordings.imu = simulated.imu;
+  recordings.gnss = simulated.gnss;
+  const coast::jobs::ProcessedMission mission = coast::jobs::process(run, recordings, coast::jobs::Progress{});
+
+  const double error = (mission.delivered.back().nav.r_eb_e - simulated.truth.states.back().r_eb_e).norm();
+  std::printf("%zu epochs, %.4f m from the truth; %s\n", mission.delivered.size(), error,
+              mission.result.verdict.line().c_str());
+  // tests/study holds the filter to its bounds; here a wrong link or a wrong flag would show.
+  return error < 1.0 ? 0 : 1;
 }

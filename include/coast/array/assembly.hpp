@@ -1,5 +1,5 @@
 #pragma once
-// From the recordings of several IMUs to signals that can be merged: one grid of times, one frame, the defective ones left out.
+// Converts recordings of several IMUs to signals that can be merged: on one time grid, in one frame, without defective sensors.
 
 #include <functional>
 #include <optional>
@@ -23,17 +23,17 @@ struct ArrayMember {
 
 struct AssemblyOptions {
   double rate_hz = 0.0;                           ///< of the grid; 0: the first member's
-  std::optional<LagOptions> lags = LagOptions{};  ///< against the first member; absent: tags are believed
-  std::optional<MountingOptions> mounting;        ///< absent: stated frames are believed
+  std::optional<LagOptions> lags = LagOptions{};  ///< relative to the first member; absent: tags are used as they are
+  std::optional<MountingOptions> mounting;        ///< absent: stated frames are used
   std::optional<DefectOptions> defects = DefectOptions{};
-  double offset_window_s = 30.0;  ///< slower differences of the sensors are not noise to be weighed
+  double offset_window_s = 30.0;  ///< slower differences of the sensors do not count as noise in the weights
 };
 
 struct Assembly {
-  Signals signals;   ///< body axes, at the origin, defective stretches excluded; biases as they are
-  Signals levelled;  ///< the same without the sensors' offsets from each other: what is merged
+  Signals signals;   ///< body axes, at the origin, defective periods excluded; biases included
+  Signals levelled;  ///< the same without the offsets between sensors: input of the merge
   std::vector<SensorFrame> frames;
-  std::vector<std::optional<LagCurve>> lags;  ///< against the first; empty where tags are believed
+  std::vector<std::optional<LagCurve>> lags;  ///< relative to the first; empty if tags are used as they are
   std::optional<RefinedMounting> mounting;
   int differentiator_half_width = 0;
   double alpha_error_sd = 0.0;  ///< rad/s^2
@@ -41,9 +41,9 @@ struct Assembly {
   record::Events events;
 };
 
-/// Resamples, finds lags and takes them out, refines the mounting, moves to the body's origin, finds and excludes defective
-/// sensors, takes off offsets, in this order. A sensor's bias that has jumped is taken back to what it was before.
-/// @param progress  told what is being done, and the share that is done
+/// In this order: resamples, estimates and corrects lags, refines the mounting, repeats both, moves to the body's origin, finds
+/// and excludes defective sensors, subtracts offsets. A jump in a sensor's bias is subtracted.
+/// @param progress  called with the current step and the fraction done
 /// @throws std::invalid_argument  fewer than two members, or recordings that overlap by less than 20 s
 [[nodiscard]] Assembly assemble(const std::vector<ArrayMember>& members, const AssemblyOptions& options,
                                 const std::function<void(const char*, double)>& progress = {});

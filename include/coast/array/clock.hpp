@@ -1,5 +1,5 @@
 #pragma once
-// What time a device's samples were taken at: its clock against GPS time, from arrival times or from sync pulses.
+// Sampling times of a device: its clock relative to GPS time, from arrival times or from sync pulses.
 
 #include <cstdint>
 #include <vector>
@@ -8,7 +8,7 @@
 
 namespace coast::array {
 
-/// One clock read against another: straight lines between knots, continued beyond the outer ones.
+/// Relation of two clocks: linear between knots, extrapolated beyond the outer ones.
 class ClockCurve {
  public:
   struct Knot {
@@ -22,16 +22,16 @@ class ClockCurve {
   explicit ClockCurve(std::vector<Knot> knots);
 
   [[nodiscard]] const std::vector<Knot>& knots() const { return knots_; }
-  /// Time of an instant of the device; O(log knots).
+  /// Converts device time to time; O(log knots).
   [[nodiscard]] double time(double device_s) const;
-  /// The inverse.
+  /// Converts time to device time.
   [[nodiscard]] double device(double time_s) const;
 
  private:
   std::vector<Knot> knots_;
 };
 
-/// Of the packets: arrival minus curve. Of pulses: pulse minus straight line.
+/// For packets: arrival minus curve. For pulses: pulse minus straight line.
 struct ClockResiduals {
   std::size_t count = 0;
   double minimum = 0.0;  ///< s
@@ -40,67 +40,67 @@ struct ClockResiduals {
   double maximum = 0.0;
 };
 
-/// A clock, and the straight line through it:  time = device + offset + drift (device - reference).
+/// A clock curve, and the straight line fitted to it:  time = device + offset + drift (device - reference).
 struct ClockFit {
   ClockCurve curve;
   double reference_s = 0.0;      ///< device time, middle of the record
-  double offset_s = 0.0;         ///< there
+  double offset_s = 0.0;         ///< at reference_s
   double drift_ppm = 0.0;        ///< positive: the device's second is longer than a second
-  double offset_sigma_s = 0.0;   ///< of what varies; a delay that all packets share is not in it
-  double drift_sigma_ppm = 0.0;  ///< of the straight line: where the clock is curved, it holds for the mean only
+  double offset_sigma_s = 0.0;   ///< random part; a delay common to all packets is not included
+  double drift_sigma_ppm = 0.0;  ///< of the straight line: if the clock is curved, it applies to the mean only
   ClockResiduals residuals;
-  std::size_t rejected = 0;  ///< pulses out of place
+  std::size_t rejected = 0;  ///< rejected pulses
 };
 
 struct ClockOptions {
-  double quantile = 0.05;  ///< of the delays that counts as no delay, (0, 0.5]
-  double block_s = 5.0;    ///< one quantile is taken of each
-  double knot_s = 60.0;    ///< between knots; records shorter than three such have a straight line
+  double quantile = 0.05;  ///< quantile of the delays that is used as zero delay, (0, 0.5]
+  double block_s = 5.0;    ///< one quantile is computed per block
+  double knot_s = 60.0;    ///< between knots; records shorter than three of these have a straight line
 };
 
-/// A clock from when its packets came (software synchronisation). Arrival is device time on the other's clock and a delay that
-/// is positive, jitters and has a heavy tail, so the clock is the lower edge of arrival - device over device: a low quantile of
-/// every block of seconds, and robust (broken) lines through these. What is taken for no delay is the quantile asked for, above
-/// the fastest packets by -residuals.minimum.
+/// A clock from the arrival times of its packets (software synchronisation). Arrival is device time, on the other clock, plus a
+/// delay that is positive, jitters and has a heavy tail, so the clock is the lower edge of arrival - device as a function of
+/// device time: a low quantile of every block of seconds, and robust (piecewise linear) fits through these. The chosen quantile
+/// is used as zero delay; it is later than the fastest packets by -residuals.minimum.
 ///
 ///     var(quantile q of n packets) = q (1 - q)/(n p^2),    p the density of the delays there;
 ///
-/// stated errors come from the scatter of the blocks, neighbours' correlation included. With exponential delays of 2 ms mean at
-/// 100 Hz over 600 s: 2 us and 0.01 ppm.
+/// stated errors come from the scatter of the blocks, including correlation of neighbours. With exponential delays of 2 ms mean
+/// at 100 Hz over 600 s: 2 us and 0.01 ppm.
 ///
 /// @param device_s   by the device, strictly increasing
-/// @param arrival_s  of the same packets
+/// @param arrival_s  arrival times of the same packets
 /// @throws std::invalid_argument  different sizes, times not finite or not increasing, an option outside its range, fewer than
 ///         60 packets
-/// @note  A delay that all packets share cannot be told from an offset: the curve is late by it. The device and the master on
-///        the same computer share most of it; what is left shows in the signals (alignment.hpp).
+/// @note  A delay common to all packets cannot be separated from an offset: the curve is late by it. Most of it is common to
+///        device and master on the same computer; the rest can be estimated from the signals (alignment.hpp).
 [[nodiscard]] ClockFit fit_clock(const std::vector<double>& device_s, const std::vector<double>& arrival_s,
                                  const ClockOptions& options = {});
 
 /// The computer's clock from the master's packets, which carry GPS time: device_s of the result is GPS time, time is the
-/// computer's, so `curve.device(arrival)` is the GPS time of an arrival. Packets without `master_s` do not count.
+/// computer's, so `curve.device(arrival)` is the GPS time of an arrival. Packets without `master_s` are not used.
 /// @throws std::invalid_argument  as fit_clock
 [[nodiscard]] ClockFit computer_clock(const PacketSegment& master, const ClockOptions& options = {});
 
 /// A device in software synchronisation: device time is counter * interval, time is GPS time.
 /// @param interval_s  nominal, > 0
-/// @param computer    of `computer_clock`
+/// @param computer    result of `computer_clock`
 /// @throws std::invalid_argument  as fit_clock
 [[nodiscard]] ClockFit software_clock(const PacketSegment& device, double interval_s, const ClockFit& computer,
                                       const ClockOptions& options = {});
 
-/// Pulse n is given at first_s + n period_s of GPS time.
+/// Pulse n is at first_s + n period_s of GPS time.
 struct PulseTrain {
   double first_s = 0.0;
   double period_s = 1.0;
 };
 
-/// A device in hardware synchronisation: the samples taken at pulses have known times, those between lie evenly between them.
-/// Device time is counter * interval. A pulse that is off from its neighbours by more than half an interval is rejected.
-/// @throws std::invalid_argument  interval or period not above zero, fewer than two pulses in place
+/// A device in hardware synchronisation: the samples triggered by pulses have known times, those between are equally spaced.
+/// Device time is counter * interval. A pulse that disagrees with its neighbours by more than half an interval is rejected.
+/// @throws std::invalid_argument  interval or period not above zero, fewer than two valid pulses
 [[nodiscard]] ClockFit pulse_clock(const PacketSegment& device, double interval_s, const PulseTrain& pulses);
 
-/// Intervals between samples with consecutive counters, as they arrived and as the clock has them.
+/// Intervals between samples with consecutive counters, by arrival times and by the clock.
 struct SamplingInterval {
   double time_s = 0.0;       ///< of the later sample, by the clock
   double arrival_s = 0.0;    ///< difference of arrivals

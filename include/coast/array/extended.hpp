@@ -1,8 +1,7 @@
 #pragma once
 // The extended mechanisation: one strapdown integrates the weighted sum of all sensors, and every sensor keeps its own error
-// states, which the sensors' differences tie to each other. Beyond Stebler et al. (2011), who merge first and know one error
-// of the sum; where their errors are slow, sum and differences
-// together hold all that the sensors say.
+// states, which are coupled by measurements of the sensors' differences. An extension of Stebler et al. (2011), who merge first
+// and model one error of the sum; for slow errors, sum and differences together contain all information of the sensors.
 
 #include <span>
 #include <string>
@@ -13,17 +12,17 @@
 
 namespace coast::array {
 
-/// One sensor as its error model describes it.
+/// One sensor and its error model.
 struct ModelledSensor {
   std::string name;
   const noise::ImuErrorModel* model = nullptr;
-  Eigen::Matrix3d C_s_b = Eigen::Matrix3d::Identity();  ///< its axes lie along the body's to `kMostTilt`
+  Eigen::Matrix3d C_s_b = Eigen::Matrix3d::Identity();  ///< its axes are aligned with the body's to `kMostTilt`
 };
 inline constexpr double kMemberBlock = 1.0;  ///< s
-inline constexpr double kMostTilt = 0.2;     ///< rad: an error on one axis is held to act on one axis of the body
+inline constexpr double kMostTilt = 0.2;     ///< rad: an error on one axis is assumed to act on one axis of the body
 
-/// Weights of the sum in each channel by the inverse of the sensors' white noise: 6 x K, rows add up to 1. With these, and only
-/// these, the noise of the sum is independent of all differences.
+/// Weights of the sum in each channel, inverse to the variances of the sensors' white noise: 6 x K, rows add up to 1. Only with
+/// these weights is the noise of the sum independent of all differences.
 /// @throws std::invalid_argument  axes tilted by more than `kMostTilt`; a sensor without white noise on an axis
 [[nodiscard]] Eigen::MatrixXd extended_weights(std::span<const ModelledSensor> sensors);
 
@@ -32,15 +31,15 @@ inline constexpr double kMostTilt = 0.2;     ///< rad: an error on one axis is h
 [[nodiscard]] noise::ImuErrorModel extended_error_model(const std::string& name, double rate_hz,
                                                         std::span<const ModelledSensor> sensors);
 
-/// A channel that was merged from `levelled` signals with what was taken off put back, each sensor's with its weight: where all
-/// may be used, the weighted sum of `signals`.
+/// A channel merged from `levelled` signals, with the subtracted offsets of each sensor added back with its weight: if all
+/// sensors are usable, the weighted sum of `signals`.
 [[nodiscard]] Eigen::VectorXd with_offsets(const Signals& signals, const Signals& levelled, int channel,
                                            const Eigen::VectorXd& levelled_sum,
                                            const Eigen::Ref<const Eigen::VectorXd>& weights);
 
-/// Means of every sensor over blocks of `kMemberBlock`, of one that may be used in all channels of the whole block. A filter
-/// takes them for what the errors are in the middle.
-/// @param block_s  short against the shortest correlation time of the sensors' processes
+/// Means of every sensor over blocks of `kMemberBlock`, if it is usable in all channels of the whole block. A filter uses them
+/// as the errors at the middle of the block.
+/// @param block_s  short compared with the shortest correlation time of the sensors' processes
 [[nodiscard]] record::MemberBlocks member_blocks(const Signals& signals, double block_s = kMemberBlock);
 
 }  // namespace coast::array

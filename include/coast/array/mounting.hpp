@@ -1,5 +1,5 @@
 #pragma once
-// C_b^k and r^k from the signals themselves, where they are only roughly known.
+// Estimates C_b^k and r^k from the signals, if they are only roughly known.
 
 #include <Eigen/Core>
 #include <vector>
@@ -9,9 +9,9 @@
 namespace coast::array {
 
 struct MountingOptions {
-  double rotation_sd = 0.1;     ///< rad, how far the stated attitude of a sensor may be off, each axis
-  double position_sd_m = 0.05;  ///< how far its stated place may be off, each axis
-  double block_s = 0.1;         ///< residuals are averaged over this: vibration and what is left of lags average out
+  double rotation_sd = 0.1;     ///< rad, prior sd of the stated attitude of a sensor, each axis
+  double position_sd_m = 0.05;  ///< prior sd of its stated position, each axis
+  double block_s = 0.1;         ///< residuals are averaged over this, to reduce vibration and remaining lags
   int iterations = 4;
 };
 
@@ -24,19 +24,19 @@ struct RefinedSensor {
 
 struct RefinedMounting {
   std::vector<RefinedSensor> sensors;
-  /// Root mean square of the sensors about their mean, biases taken off, as stated and as refined: rad/s, m/s^2.
+  /// Root mean square of the sensors about their mean, biases removed, with stated and with refined frames: rad/s, m/s^2.
   double rates_before = 0.0, rates_after = 0.0;
   double forces_before = 0.0, forces_after = 0.0;
 };
 
-/// Attitude and place of every sensor relative to the others. A rotation phi of sensor k, a shift dr of its place and its
-/// biases show in its residuals against the mean of all as
+/// Attitude and position of every sensor relative to the others. A rotation phi of sensor k, a shift dr of its position and its
+/// biases appear in its residuals to the mean of all as
 ///
-///     rates:            omega x phi + b_g                 (small angles; repeated until nothing moves)
-///     specific forces:  f x phi + A dr + b_a,   A = [alpha x] + [omega x][omega x]
+///     rates:            omega x phi + b_g                 (small angles; iterated to convergence) specific forces:  f x phi +
+///     A dr + b_a,   A = [alpha x] + [omega x][omega x]
 ///
-/// solved by weighted least squares with the stated values as prior. What all sensors have in common cannot be seen: the mean
-/// rotation and the mean place stay as stated.
+/// solved by weighted least squares with the stated values as prior. Errors common to all sensors are not observable: the mean
+/// rotation and the mean position stay as stated.
 /// @param sensor_axes  signals on one grid in each sensor's own axes, with at least 100 blocks
 /// @throws std::invalid_argument  fewer than two sensors, frames that do not match, too short
 [[nodiscard]] RefinedMounting refine_mounting(const Signals& sensor_axes, const std::vector<SensorFrame>& stated,

@@ -1,5 +1,5 @@
 #pragma once
-// From packets to a recording with GPS times: one clock per device, Stebler et al. (2011), section III.B.
+// Converts packets to a recording with GPS times: one clock per device, Stebler et al. (2011), section III.B.
 
 #include <optional>
 #include <vector>
@@ -12,13 +12,13 @@ namespace coast::array {
 
 struct TimedRecording {
   record::ImuRecording imu;                 ///< tagged with GPS time, end of the interval
-  PacketReport report;                      ///< what was lost, doubled, out of order
+  PacketReport report;                      ///< lost, duplicate and out-of-order packets
   std::vector<ClockFit> clocks;             ///< one per segment that has one
   std::vector<SamplingInterval> intervals;  ///< of the paper's Fig. 8
 };
 
 /// Software synchronisation: the device's samples by its counter and the computer's clock.
-/// @param computer  `computer_clock` of the master's packets  @param week  of the master's seconds
+/// @param computer  `computer_clock` of the master's packets  @param week  GPS week of the master's seconds
 /// @throws std::invalid_argument  as check_packets and fit_clock; no segment with enough packets for a clock
 [[nodiscard]] TimedRecording time_by_packets(const record::PacketRecording& packets, const Counting& counting,
                                              const ClockFit& computer, int week);

@@ -1,5 +1,5 @@
 #pragma once
-// Several IMUs on one grid of times and in one frame: what the whole room works on.
+// Signals of several IMUs on one time grid and in one frame: the data used throughout coast::array.
 
 #include <Eigen/Core>
 #include <cstddef>
@@ -19,7 +19,7 @@ using Channels = Eigen::Matrix<double, kChannels, 1>;
 struct SensorSignals {
   std::string name;
   Eigen::Matrix<double, kChannels, Eigen::Dynamic> values;
-  /// Per column: bit c is set where row c may be used (recorded, and not found defective).
+  /// Per column: bit c is set if row c is usable (recorded, and not found defective).
   std::vector<std::uint8_t> usable;
 
   [[nodiscard]] bool may_use(int channel, std::size_t n) const { return ((usable[n] >> channel) & 1U) != 0; }

@@ -14,20 +14,20 @@ namespace coast::array {
 enum class Merge {
   kMean,       ///< Eq. (6): equal weights
   kWeighted,   ///< weights by each sensor's mean own variance, constant in time
-  kGarch,      ///< weights by each sensor's own variance as its GARCH model predicts it for the sample
-  kCorrected,  ///< the same, and what the ARMA model predicts of each sensor's error taken off: Eq. (12)
-  kExtended,   ///< weights that are given, by each sensor's own error model (extended.hpp)
+  kGarch,      ///< weights by each sensor's own variance, predicted by its GARCH model for the sample
+  kCorrected,  ///< the same, and each sensor's error predicted by its ARMA model is subtracted: Eq. (12)
+  kExtended,   ///< given weights, from each sensor's own error model (extended.hpp)
 };
 
 struct MergeOptions {
   Merge merge = Merge::kWeighted;
-  noise::ArmaGarchOrders orders{3, 2, 1, 1};  ///< the paper's
-  bool choose_orders = false;                 ///< by AICc, summed over the sensors of a channel, from `arma_garch_grid()`
-  double window_s = 2.0;                      ///< of the noise over time
-  Eigen::MatrixXd weights = {};               ///< 6 x K, of kExtended
+  noise::ArmaGarchOrders orders{3, 2, 1, 1};  ///< those of the paper
+  bool choose_orders = false;                 ///< from `arma_garch_grid()` by AICc, summed over the sensors of a channel
+  double window_s = 2.0;                      ///< window of the noise over time
+  Eigen::MatrixXd weights = {};               ///< 6 x K, for kExtended
 };
 
-/// Whether a model left its sensor's residuals white, of even variance, and normal: standardised e / sigma.
+/// Tests whether a model's standardised residuals e / sigma are white, of constant variance, and normal.
 struct ModelTests {
   noise::ResidualTest white;   ///< Ljung & Box, 20 lags
   noise::ResidualTest even;    ///< ARCH-LM, 10 lags
@@ -36,24 +36,24 @@ struct ModelTests {
 
 /// One channel of the synthetic IMU.
 struct MergedChannel {
-  Eigen::VectorXd value;                    ///< N
-  Eigen::VectorXd variance;                 ///< N, of a sample's noise, as the weights have it
-  Eigen::VectorXd weight;                   ///< K, mean over time
-  NoiseOverTime noise;                      ///< of the sensors, measured
-  Eigen::MatrixXd predicted;                ///< K x blocks of `noise`: mean own variance by the GARCH models; empty without
-  std::vector<noise::ArmaGarchFit> models;  ///< one per sensor where GARCH is used
+  Eigen::VectorXd value;      ///< N
+  Eigen::VectorXd variance;   ///< N, of a sample's noise, as used in the weights
+  Eigen::VectorXd weight;     ///< K, mean over time
+  NoiseOverTime noise;        ///< of the sensors, measured
+  Eigen::MatrixXd predicted;  ///< K x blocks of `noise`: mean own variance by the GARCH models; empty without them
+  std::vector<noise::ArmaGarchFit> models;  ///< one per sensor if GARCH is used
   std::vector<ModelTests> tests;            ///< of the models
 };
 
-/// @param signals    offsets taken off
-/// @param reference  N true values where there are some: residuals are then the sensors' own errors, not Eq. (11)
+/// @param signals    with offsets subtracted
+/// @param reference  N true values, if available: residuals are then the sensors' own errors, not Eq. (11)
 /// @throws std::invalid_argument  fewer than two sensors, a reference of another length, too few samples for the orders
 [[nodiscard]] MergedChannel merge_channel(const Signals& signals, int channel, const MergeOptions& options,
                                           const std::optional<Eigen::VectorXd>& reference = {});
 
-/// Density of what was merged over that of the plain mean, by the variances behind the weights and the measured noise of the
-/// sensors; 1 without noise. A GARCH model's variance is that of a sample given the past: it is raised by what that leaves out
-/// of the measured.
+/// Noise density of the merged signal over that of the plain mean, from the variances used in the weights and the measured
+/// noise of the sensors; 1 without noise. The variance of a GARCH model is conditional on the past; it is scaled up to the
+/// measured variance.
 [[nodiscard]] double white_share(const MergedChannel& merged);
 
 }  // namespace coast::array

@@ -1,5 +1,5 @@
 #pragma once
-// What the air does to a signal on its way down.
+// Ionospheric and tropospheric delays of a signal.
 
 #include <array>
 
@@ -9,25 +9,25 @@
 
 namespace coast::carrier {
 
-/// Where a satellite stands in the sky of a receiver.
+/// Direction to a satellite as seen from a receiver.
 struct Direction {
   double azimuth = 0.0;    ///< rad, from north over east, [0, 2 pi)
   double elevation = 0.0;  ///< rad, [-pi/2, pi/2]
 };
 [[nodiscard]] Direction direction_of(const Eigen::Vector3d& r_satellite_e, const Eigen::Vector3d& r_receiver_e);
 
-/// Ionospheric delay of a code on L1 (1575.42 MHz), m; a phase is advanced by as much, other frequencies f by (f1/f)^2
-/// (Klobuchar 1987; IS-GPS-200 20.3.3.5.2.5). About half of the delay, no more.
+/// Ionospheric delay of a code on L1 (1575.42 MHz), m; a phase is advanced by the same amount; other frequencies f: times
+/// (f1/f)^2 (Klobuchar 1987; IS-GPS-200 20.3.3.5.2.5). The model removes only about half of the delay.
 [[nodiscard]] double klobuchar_delay(const record::Klobuchar& model, const geo::Geodetic& receiver, const Direction& direction,
                                      geo::GpsTime t);
 
-/// Delay at the zenith, m; by surface_weather.hpp.
+/// Zenith delay, m; computed in surface_weather.hpp.
 struct ZenithDelay {
   double hydrostatic = 0.0;
   double wet = 0.0;
 };
 
-/// How much more air the signal passes than one from the zenith (Niell 1996), down to 3 degrees of elevation.
+/// Mapping functions: slant delay over zenith delay (Niell 1996), down to 3 degrees of elevation.
 struct TroposphericMapping {
   double hydrostatic = 1.0;
   double wet = 1.0;

@@ -1,5 +1,5 @@
 #pragma once
-// Differences between receivers for a filter that knows from elsewhere where the rover is: tight coupling.
+// Tight coupling: differences between receivers for a filter that has a prior position of the rover.
 
 #include <memory>
 
@@ -8,18 +8,18 @@
 
 namespace coast::carrier {
 
-/// What an epoch tells such a filter.
+/// Measurements of one epoch for the filter.
 struct CoupledEpoch {
   bool usable = false;
   Shortfall shortfall = Shortfall::kNone;
-  /// What becomes of the unknowns other than position and velocity, in order, before the measurements.
+  /// Changes of the unknowns other than position and velocity, in order, before the measurements.
   std::vector<StateChange> changes;
   std::vector<Unknown> unknowns;  ///< after the changes: the columns of H and H_integers; the first three are the position
-  /// Double differences of phases, codes and rates, of unit variance and uncorrelated: nu = H (truth - state) + noise.
+  /// Double differences of phases, codes and rates, decorrelated to unit variance: nu = H (truth - state) + noise.
   Eigen::MatrixXd H;
   Eigen::VectorXd nu;
   double nis = 0.0;
-  /// Integers that have come out several epochs in a row, as measurements like the others, of the state behind these.
+  /// Integers that were the same for several epochs in a row, as further measurements, relative to the state after those above.
   Eigen::MatrixXd H_integers;
   Eigen::VectorXd nu_integers;
   int satellites = 0;
@@ -27,18 +27,18 @@ struct CoupledEpoch {
   bool fixed = false;
 };
 
-/// Settles what RelativeFilter settles for a rover by itself: which ambiguities begin, go on and end, what is left out, and
-/// what is an integer. The filter that it serves carries the unknowns.
+/// Makes the decisions that RelativeFilter makes for a rover alone: which ambiguities begin, continue and end, which
+/// observations are rejected, and which ambiguities are integers. The unknowns are states of the filter that uses it.
 class Coupling {
  public:
-  /// @param options  with `air` and `noise` settled; must outlive this  @param interval_s  of the rover
+  /// @param options  with `air` and `noise` set; must outlive this  @param interval_s  of the rover
   Coupling(const PpkOptions& options, double interval_s);
   ~Coupling();
   Coupling(Coupling&&) noexcept;
   Coupling& operator=(Coupling&&) noexcept;
 
-  /// Epochs in order of time, or all of them against it.
-  /// @param prior  position, velocity (kVelocityUnknowns) and whatever unknowns are carried, with their covariance
+  /// Epochs in time order, or all in reverse time order.
+  /// @param prior  position, velocity (kVelocityUnknowns) and all current unknowns, with their covariance
   [[nodiscard]] CoupledEpoch step(RelativeState prior, const DifferenceEpoch& epoch);
 
  private:
@@ -46,7 +46,7 @@ class Coupling {
   std::unique_ptr<Parts> parts_;
 };
 
-/// Most unknowns, position and velocity apart, that such a filter carries at a time.
+/// Largest number of unknowns, without position and velocity, that such a filter has at one time.
 [[nodiscard]] std::size_t most_unknowns(const std::vector<DifferenceEpoch>& epochs, const PpkOptions& options,
                                         double interval_s);
 

@@ -1,45 +1,45 @@
 #pragma once
-// From a satellite's antenna to a receiver's: the way that a signal takes, and what a receiver at rest on it would measure.
+// Signal path from a satellite's antenna to a receiver's antenna, and the modelled measurements.
 
 #include "coast/carrier/atmosphere.hpp"
 #include "coast/carrier/orbits.hpp"
 
 namespace coast::carrier {
 
-/// Which of the air's delays are modelled.
+/// Which atmospheric delays are modelled.
 struct AirModel {
   bool troposphere = true;                      ///< zenith_delay of the surface_weather, mapped after Niell
-  std::optional<record::Klobuchar> ionosphere;  ///< for codes of a single receiver; differences over baselines leave it out
-  /// Ionosphere-free: single points by codes of two bands in which it cancels; of differences every satellite has its slant
-  /// delay as a state of which nothing is known beforehand, which tells what the ionosphere-free combination does and keeps the
-  /// ambiguities integers.
+  std::optional<record::Klobuchar> ionosphere;  ///< for codes of a single receiver; not used for differences over baselines
+  /// Ionosphere-free: single points from the ionosphere-free combination of two bands; for differences every satellite has its
+  /// slant delay as a state without prior, which gives the same information as the ionosphere-free combination and keeps the
+  /// ambiguities integer.
   bool ionosphere_free = false;
 };
 
-/// The satellite when it sent what the receiver got at t, in the ECEF of that time. A pseudorange is the difference of what
-/// two clocks show, so t - P/c is the satellite's clock at transmission, however wrong the receiver's is.
-/// @param t  as the receiver's clock showed it  @param pseudorange  m
+/// The satellite at transmission of the signal received at t, in the ECEF of that time. A pseudorange is the difference of two
+/// clock readings, so t - P/c is the satellite's clock at transmission, whatever the receiver clock error.
+/// @param t  by the receiver's clock @param pseudorange  m
 [[nodiscard]] std::optional<SatelliteState> at_transmission(const Orbits& orbits, record::Satellite satellite, geo::GpsTime t,
                                                             double pseudorange);
 
-/// The way from satellite to receiver.
+/// Path from satellite to receiver.
 struct SignalPath {
-  double range = 0.0;                                         ///< m, with the Earth's rotation under way (Sagnac)
+  double range = 0.0;                                         ///< m, with the Earth's rotation during travel (Sagnac)
   Eigen::Vector3d to_satellite_e = Eigen::Vector3d::UnitX();  ///< from the receiver
   Direction direction;
   double troposphere = 0.0;  ///< m
-  double wet_mapping = 1.0;  ///< of residual delay at the zenith
+  double wet_mapping = 1.0;  ///< of the residual zenith delay
 
-  /// What code and phase have in common but for the receiver's clock, ionosphere and ambiguity, m.
+  /// Modelled part common to code and phase, without receiver clock, ionosphere and ambiguity, m.
   [[nodiscard]] double modelled(const SatelliteState& satellite) const;
 };
-/// @param satellite  at transmission  @param t  for the season  @param troposphere  whether it is modelled: it is left out also
-/// below 1 degree of elevation
+/// @param satellite  at transmission  @param t  for the season  @param troposphere  whether it is modelled; below 1 degree of
+///                   elevation it never is
 [[nodiscard]] SignalPath path_to(const SatelliteState& satellite, const Eigen::Vector3d& r_receiver_e,
                                  const geo::Geodetic& receiver, geo::GpsTime t, bool troposphere);
 
-/// Rate of the range to a satellite, with its clock's and the Earth's rotation (Sagnac), m/s: what the Doppler of a receiver
-/// whose clock does not drift shows.
+/// Rate of the range to a satellite, with its clock rate and the Earth's rotation (Sagnac), m/s: the Doppler of a receiver
+/// without clock drift.
 [[nodiscard]] double modelled_rate(const SatelliteState& satellite, const Eigen::Vector3d& r_receiver_e,
                                    const Eigen::Vector3d& v_receiver_e);
 

@@ -1,5 +1,5 @@
 #pragma once
-// The unknowns of a baseline with names, since satellites come and go.
+// The named unknowns of a baseline; their set changes as satellites rise and set.
 
 #include <Eigen/Core>
 #include <array>
@@ -26,34 +26,34 @@ inline constexpr std::array kVelocityUnknowns{Unknown{Unknown::Kind::kVelocity, 
                                               Unknown{Unknown::Kind::kVelocity, {}, 'y', 0},
                                               Unknown{Unknown::Kind::kVelocity, {}, 'z', 0}};
 
-/// What became of one unknown: x <- factor x + value, variance <- factor^2 variance + added. Without a factor whatever was
-/// known of it is forgotten.
+/// Change of one unknown: x <- factor x + value, variance <- factor^2 variance + added. With factor 0 its previous estimate is
+/// discarded.
 struct StateChange {
   Unknown unknown;
   double factor = 1.0;
   double value = 0.0;
   double added = 0.0;
-  bool gone = false;  ///< it is no longer carried
+  bool gone = false;  ///< it is removed
 };
 
 /// Mean and covariance of a changing set of unknowns. The first three are the position, ECEF, m; ambiguities are in cycles,
-/// delays in m, inter-frequency biases in m from one of GLONASS's channels to the next, velocities in m/s.
+/// delays in m, inter-frequency biases in m per GLONASS channel number, velocities in m/s.
 class RelativeState {
  public:
   RelativeState();
-  /// @param named  the unknowns behind the position, in order
+  /// @param named  the unknowns after the position, in order
   RelativeState(const std::vector<Unknown>& named, Eigen::VectorXd mean, Eigen::MatrixXd covariance);
 
   Eigen::VectorXd x;
   Eigen::MatrixXd P;
-  std::optional<Eigen::Matrix3d> C_b_e;  ///< attitude of the antenna, where somebody knows it
+  std::optional<Eigen::Matrix3d> C_b_e;  ///< attitude of the antenna, if known
 
   [[nodiscard]] Eigen::Index size() const { return x.size(); }
   [[nodiscard]] const std::vector<Unknown>& unknowns() const { return unknowns_; }
-  /// -1 where it is not there.
+  /// -1 if not present.
   [[nodiscard]] Eigen::Index index(const Unknown& unknown) const;
   Eigen::Index add(const Unknown& unknown, double value, double variance);
-  /// What has been learnt of it is forgotten.
+  /// Discards its previous estimate.
   void reset(Eigen::Index i, double value, double variance);
   /// x <- factor x, with driving noise.
   void evolve(Eigen::Index i, double factor, double added);
@@ -64,7 +64,7 @@ class RelativeState {
       if (!gone(unknowns_[static_cast<std::size_t>(i)])) kept.push_back(i);
     keep(kept);
   }
-  /// Of named unknowns, in order, since the last call: whoever carries them elsewhere can follow.
+  /// Changes of named unknowns, in order, since the last call, so that a filter with its own copy can follow.
   [[nodiscard]] std::vector<StateChange> take_changes();
 
  private:

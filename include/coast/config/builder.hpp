@@ -1,5 +1,5 @@
 #pragma once
-// How a parser makes a tree: node by node, each with its line. Knows no file format.
+// Used by a parser to build a tree: node by node, each with its line. Independent of the file format.
 
 #include <cstddef>
 #include <filesystem>
@@ -10,12 +10,12 @@
 
 namespace coast::config {
 
-/// Builds a tree from the top down. Every id is an earlier return value of this builder.
+/// Builds a tree from the top down. Every id passed in was returned by this builder before.
 class TreeBuilder {
  public:
   using Id = std::size_t;
 
-  /// @param file names the tree in messages; relative paths in it are taken from its folder
+  /// @param file names the tree in messages; relative paths in it are relative to its folder
   explicit TreeBuilder(std::filesystem::path file);
 
   /// The top of the tree: exactly one of these, first.
@@ -27,7 +27,7 @@ class TreeBuilder {
   Id add_map(Id parent, std::string key, long line);
   Id add_list(Id parent, std::string key, long line);
   Id add_scalar(Id parent, std::string key, std::string text, long line);
-  /// A key without a value ("key:" or "key: null"): reading it is an error that says so.
+  /// A key without a value ("key:" or "key: null"): reading it is an error.
   Id add_null(Id parent, std::string key, long line);
 
   /// The finished tree's root; the builder is empty afterwards.

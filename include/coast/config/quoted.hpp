@@ -4,7 +4,7 @@
 
 namespace coast::config {
 
-/// A YAML scalar in single quotes: the one style in which nothing but the quote itself needs care.
+/// A YAML scalar in single quotes, the style in which only the quote itself is escaped.
 [[nodiscard]] std::string quoted(const std::string& text);
 
 }  // namespace coast::config

@@ -1,5 +1,5 @@
 #pragma once
-// Recordings and setup with found effects taken out.
+// Recordings and setup corrected for detected effects.
 
 #include <optional>
 #include <vector>
@@ -11,20 +11,21 @@
 
 namespace coast::diagnose {
 
-/// A hypothesis taken for true, with its size.
-struct Taken {
+/// A selected effect with its size.
+struct SelectedEffect {
   Eigen::Index hypothesis = 0;
-  std::optional<geo::GpsTime> from = {};  ///< the whole mission where absent
+  std::optional<geo::GpsTime> from = {};  ///< if absent: the whole mission
   std::optional<geo::GpsTime> to = {};
   double value = 0.0;
   [[nodiscard]] bool holds(geo::GpsTime t) const { return (!from || t >= *from) && (!to || t < *to); }
+  bool operator==(const SelectedEffect&) const = default;
 };
 
-/// The same without a recording at hand: how files name it.
+/// The same as named in files, independent of a recording.
 struct NamedEffect {
-  const Effect* effect = nullptr;        ///< of the catalogue, or `suggested`; null: a random one
-  const NoiseEffect* noise = nullptr;    ///< is added to the noise level; `value` is the root of its variance
-  const SampleEffect* sample = nullptr;  ///< of a converter
+  const Effect* effect = nullptr;        ///< of the catalogue, or `suggested`; null for a random effect
+  const NoiseEffect* noise = nullptr;    ///< random effect, added to the noise model; `value` is the root of its variance
+  const SampleEffect* sample = nullptr;  ///< effect of a converter
   Eigen::Index axis = 0;
   double value = 0.0;
   std::optional<double> from_s;  ///< seconds of week
@@ -32,24 +33,23 @@ struct NamedEffect {
   EffectPtr suggested = {};
 };
 
-/// What is filtered.
+/// Input of the filter.
 struct MissionInput {
   record::ImuRecording imu;  ///< body axes
   record::GnssRecording gnss;
   study::Setup setup;
 };
 
-/// The input as it would have been without the effects. Effects that the configuration has a place for, and that last the whole
-/// mission, go there.
-/// @param path    trajectory that rates, forces and directions are taken along, at IMU epochs; fixes outside it stay as they
-/// are
-/// @param layout  of the filter that made it
-[[nodiscard]] MissionInput without(const std::vector<Taken>& taken, const MissionInput& input, const Hypotheses& hypotheses,
-                                   const std::vector<record::NavState>& path, const estimate::Mission& mission,
-                                   const estimate::StateLayout& layout);
+/// The input corrected for the effects. Effects that can be stated in the configuration, and that last the whole mission, are
+/// corrected there.
+/// @param path    trajectory at IMU epochs that gives rates, forces and directions; fixes outside it are not changed
+/// @param layout  layout of the filter that computed the path
+[[nodiscard]] MissionInput without(const std::vector<SelectedEffect>& effects, const MissionInput& input,
+                                   const Hypotheses& hypotheses, const std::vector<record::NavState>& path,
+                                   const estimate::Mission& mission, const estimate::StateLayout& layout);
 
-/// The input without effects that somebody names. Takes a run for the trajectory that they are taken out along.
-/// @throws InputError  an effect that this recording cannot have: no temperature
+/// The input corrected for named effects. Needs a filter run for the trajectory used in the correction.
+/// @throws InputError  an effect that this recording does not support: no temperature
 [[nodiscard]] MissionInput without(const std::vector<NamedEffect>& effects, const MissionInput& input,
                                    const study::Progress& progress);
 

@@ -1,5 +1,5 @@
 #pragma once
-// The catalogue applied to one recording: every coefficient that it could show, and what a unit of each does to its samples.
+// The catalogue applied to one recording: every observable coefficient, and the effect per unit of each on the samples.
 
 #include <vector>
 
@@ -18,18 +18,18 @@ struct Hypothesis {
   [[nodiscard]] const std::string& axis_name() const { return effect->axes[static_cast<std::size_t>(axis)]; }
 };
 
-/// Signals of a recording that no single sample shows, computed once.
+/// Signals of a recording that need more than one sample, computed once.
 class SignalTable {
  public:
   /// @param imu  body axes; must outlive the table
   SignalTable(const record::ImuRecording& imu, const Eigen::Matrix3d& C_s_b);
   [[nodiscard]] bool has_temperature() const { return !imu_.temperature.empty(); }
-  /// @param omega_b, f_b  of the sample, body axes, freed of errors where they are known  @param nav  near it
+  /// @param omega_b, f_b  of the sample, body axes, corrected for known errors  @param nav  state near it
   [[nodiscard]] Signals at(std::size_t sample, const Eigen::Vector3d& omega_b, const Eigen::Vector3d& f_b,
                            const record::NavState& nav) const;
-  /// Over a tenth of a second about the beginning of a sample, body axes, as measured.
+  /// Means over a tenth of a second about the beginning of a sample, body axes, as measured.
   struct Means {
-    Eigen::Vector3d omega_b = Eigen::Vector3d::Zero();  ///< against inertial space, rad/s
+    Eigen::Vector3d omega_b = Eigen::Vector3d::Zero();  ///< relative to inertial space, rad/s
     Eigen::Vector3d f_b = Eigen::Vector3d::Zero();      ///< m/s^2
   };
   [[nodiscard]] Means means_about(std::size_t sample) const;
@@ -43,30 +43,31 @@ class SignalTable {
   double mean_temperature_ = 0.0;
 };
 
-/// All coefficients side by side, as the pass over the knots wants them.
+/// All coefficients together, as input of effect_pass().
 class Hypotheses : public estimate::Effects {
  public:
-  /// Those that need what the recording does not have are left out. @param mission  must outlive the set
-  /// @param path  the smoothed motion, ascending, along which effects on fixes are seen; must outlive the set. The filter's own
-  /// velocity has in it what the last innovations were, which would be taken for an effect of velocity: a time offset
-  /// @param filter  what it is told of the vehicle; must outlive the set
-  /// @param suggested  behind the catalogue's; must outlive the set
+  /// Effects that need data not in the recording are left out. @param mission  must outlive the set
+  /// @param path  the smoothed motion, ascending, used for effects on fixes; must outlive the set. The filter's own velocity
+  ///              depends on the last innovations, which would look like an effect of velocity: a time offset
+  /// @param filter  its vehicle constraints are used; must outlive the set
+  /// @param suggested  appended to the catalogue; must outlive the set
   Hypotheses(const estimate::Mission& mission, const estimate::FilterOptions& filter, Grade grade,
              const std::vector<record::NavState>& path, const std::vector<EffectPtr>& suggested);
 
   [[nodiscard]] Eigen::Index size() const override { return static_cast<Eigen::Index>(all_.size()); }
   [[nodiscard]] const std::vector<Hypothesis>& all() const { return all_; }
   [[nodiscard]] const Hypothesis& operator[](Eigen::Index i) const { return all_[static_cast<std::size_t>(i)]; }
-  /// Where a constant error of a sensor axis is: a bias that steps. @param axis  0 to 2
+  /// Index of the hypothesis of a bias step of a sensor axis. @param axis  0 to 2
   [[nodiscard]] Eigen::Index bias_step(Site site, Eigen::Index axis) const;
-  /// Why an effect is left out; nothing where it is not.
+  /// Why an effect is left out; null if it is not.
   [[nodiscard]] const char* why_not_seen(const Effect& effect) const;
-  /// What the sensor axes see at a sample.
+  /// Signals in sensor axes at a sample.
   [[nodiscard]] Signals signals(const estimate::SampleView& sample) const;
   void add_sensor_errors(const estimate::SampleView& sample, Eigen::Matrix3Xd& gyro_b,
                          Eigen::Matrix3Xd& accel_b) const override;
   void add_measurement_errors(const estimate::MeasurementView& measurement, Eigen::MatrixXd& D) const override;
-  /// Of a fix alone: without what gyros that err make of the prediction. @param measurement  position or velocity of a fix
+  /// Errors of the fix only, without the effect of gyro errors on the prediction. @param measurement  position or velocity of a
+  /// fix
   void add_fix_errors(const estimate::MeasurementView& measurement, Eigen::MatrixXd& D) const;
 
  private:
@@ -77,7 +78,7 @@ class Hypotheses : public estimate::Effects {
   };
   [[nodiscard]] record::NavState smoothed(const record::NavState& filtered) const;
   void add_slip(const estimate::MeasurementView& measurement, Eigen::MatrixXd& D) const;
-  /// Of the measured rate, with which what a filter predicts of a point off the IMU turns, body axes.
+  /// Errors of the measured rate, which enter the filter's prediction for a point away from the IMU, body axes.
   [[nodiscard]] Eigen::Matrix3Xd rate_errors(const estimate::MeasurementView& measurement, Eigen::Index columns) const;
 
   const estimate::Mission& mission_;

@@ -1,5 +1,5 @@
 #pragma once
-// Random effects: a process of one sensor axis that the error model may have left out, and the table of all that are known.
+// Random effects: a process of one sensor axis that may be missing in the error model, and the catalogue of all.
 
 #include <Eigen/Core>
 #include <array>
@@ -16,33 +16,33 @@ struct MissionInput;
 /// The six axes of an IMU in one row: gyro x, y, z, accelerometer x, y, z.
 inline constexpr int kAxes = 6;
 
-/// What the intervals between knots say of an error of one sensor axis that lasts as long as they do.
+/// Scores of an error of one sensor axis that is constant over an interval between knots, for every interval.
 struct Disturbances {
-  std::vector<geo::GpsTime> t;  ///< where the intervals begin, ascending
+  std::vector<geo::GpsTime> t;  ///< starts of the intervals, ascending
   std::vector<double> length;   ///< s
-  /// By axis, a column an interval: score of a unit of error over it. Row 0: as recorded; rows behind it: draws by chance.
+  /// By axis, one column per interval: score of a unit error over it. Row 0: as recorded; further rows: random draws.
   std::array<Eigen::MatrixXf, kAxes> score;
 };
 
 /// One random effect. Its score test (Harvey 1989, section 5.1): with a_k the score of the error of interval k, the score of
-/// the variance of a process is half of a sum of squares of sums of a_k, less what that is by chance.
+/// the variance of a process is half of a sum of squares of sums of a_k, minus its expectation by chance.
 struct NoiseEffect {
   std::string_view name{};
   Site site = Site::kGyro;
-  std::string_view parameter{};  ///< what the root of the variance is called
+  std::string_view parameter{};  ///< name of the root of the variance
   std::string_view unit{};
   std::string_view equation{};
   std::string_view meaning{};
   std::string_view separating_manoeuvre{};
   std::string_view source{};
-  std::vector<double> times{};  ///< correlation times that are looked at, s; {0}: it has none
-  /// What the variance is proportional to; empty: it is the same all the time.
+  std::vector<double> times{};  ///< correlation times that are tested, s; {0}: none
+  /// Quantity to which the variance is proportional; empty: constant variance.
   std::function<double(const Signals&)> level = {};
-  /// The sum of squares, for every row of the scores. @param level  mean over each interval; ones where it has none
+  /// The sum of squares, for every row of the scores. @param level  mean over each interval; ones if there is none
   std::function<Eigen::ArrayXf(const Disturbances&, const Eigen::MatrixXf& score, const std::vector<double>& level,
                                double time)>
       power = {};
-  /// Adds it to a mission's model. @param axis  0 to 2  @param t, level  beginnings of intervals and the means over them
+  /// Adds it to a mission's model. @param axis  0 to 2  @param t, level  starts of intervals and means over them
   std::function<void(MissionInput&, int axis, double root, double time, const std::vector<geo::GpsTime>& t,
                      const std::vector<double>& level)>
       add = {};

@@ -1,5 +1,5 @@
 #pragma once
-// Effects that leave their mark in the samples themselves: what a converter does to a signal.
+// Effects that can be detected in the samples themselves, such as those of an analogue-to-digital converter.
 
 #include <Eigen/Core>
 #include <optional>
@@ -12,11 +12,11 @@ namespace coast::diagnose {
 
 struct MissionInput;
 
-/// One axis of a sensor as its converter delivered it: rates or specific forces.
+/// One axis of a sensor as output by its converter: rates or specific forces.
 struct AxisSeries {
   Eigen::ArrayXd values;         ///< sensor axis, rad/s or m/s^2
   double white_sd = 0.0;         ///< of a sample, by the error model
-  bool rounding_stated = false;  ///< the error model knows of a rounding
+  bool rounding_stated = false;  ///< the error model contains a rounding
 };
 [[nodiscard]] AxisSeries axis_series(const MissionInput& input, Site site, int axis);
 
@@ -29,11 +29,12 @@ struct SampleEffect {
   std::string_view meaning{};
   std::string_view separating_manoeuvre{};
   std::string_view source{};
-  /// The parameter, where the samples bear the mark.
+  /// The parameter, if the effect is detected in the samples.
   std::optional<double> (*find)(const AxisSeries& series) = nullptr;
-  /// The mission with what can be mended mended, and with noise for the rest.
+  /// Corrects the mission as far as possible, and adds noise for the rest.
   void (*model)(MissionInput& input, Site site, int axis, double parameter) = nullptr;
-  /// Sd of an error that it may leave and that wanders: noise of the same axis that is no larger is a part of it. Null: none.
+  /// Sd of a possible remaining slowly varying error: detected noise of the same axis that is not larger is attributed to it.
+  /// Null: none.
   double (*residue)(double parameter) = nullptr;
 };
 

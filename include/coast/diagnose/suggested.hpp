@@ -1,5 +1,5 @@
 #pragma once
-// Effects that are not in the catalogue because a recording suggests their form: oscillations, and relations without a name.
+// Effects that are not in the catalogue because their form is found from a recording: oscillations, and unnamed relations.
 
 #include <memory>
 #include <string>
@@ -16,8 +16,8 @@ using EffectPtr = std::shared_ptr<const Effect>;
 /// @param frequency Hz  @param phase rad
 [[nodiscard]] EffectPtr harmonic_disturbance(Site site, int axis, double frequency, double phase);
 
-/// `unknown`: the error of an axis is in proportion to a product of signals. @param relation  a name of relations()
-/// @throws std::invalid_argument  it is none of them
+/// `unknown`: the error of an axis is proportional to a product of signals. @param relation  a name of relations()
+/// @throws std::invalid_argument  not one of relations()
 [[nodiscard]] EffectPtr unknown_relation(Site site, int axis, const std::string& relation);
 
 /// A signal, its magnitude, or the product of two: "omega_z", "|f_x|", "omega_z*speed".

@@ -1,5 +1,5 @@
 #pragma once
-// What a model says that a mission would have recorded.
+// Simulated recording of a mission according to a model.
 
 #include <cstdint>
 
@@ -7,10 +7,11 @@
 
 namespace coast::diagnose {
 
-/// A recording of the same motion by sensors that are as the setup says: increments along the trajectory with errors drawn from
-/// the error model, fixes at the recorded epochs with errors of their stated (and scaled) sigmas, white and correlated.
-/// @param path   smoothed, at IMU epochs. Its rates and velocities are kept, its positions follow from them
-/// @param model  recordings for their epochs, setup for lever arm, time offset, noise
+/// A simulated recording of the same motion by sensors as described in the setup: increments along the trajectory with errors
+/// drawn from the error model, fixes at the recorded epochs with errors of their stated (and scaled) sigmas, white and
+/// correlated.
+/// @param path   smoothed, at IMU epochs. Its rates and velocities are kept, its positions are integrated from them
+/// @param model  gives the epochs (recordings), and lever arm, time offset, noise (setup)
 [[nodiscard]] MissionInput twin(const std::vector<record::NavState>& path, const MissionInput& model, std::uint64_t seed);
 
 }  // namespace coast::diagnose

@@ -1,5 +1,5 @@
 #pragma once
-// Forward and backward filter, one state at a time: weighted where they agree, one of the two where they do not.
+// Combination of forward and backward filter, state by state: weighted mean if they agree, one of the two if not.
 
 #include <functional>
 #include <map>
@@ -12,21 +12,21 @@
 
 namespace coast::estimate {
 
-/// How far two states at one instant lie apart, d' (P_f + P_b)^-1 d over the nine navigation states: chi-square of 9 where
-/// their errors are independent, less or more where they share some.
+/// Normalised distance of two states at one instant, d' (P_f + P_b)^-1 d over the nine navigation states: chi-square with 9
+/// degrees of freedom if their errors are independent, smaller or larger if they are correlated.
 /// @param forward, backward  P at least 9 x 9, e frame, navigation states first
 /// @throws NumericalError  P_f + P_b is not positive definite
 [[nodiscard]] double contradiction(const FilterState& forward, const FilterState& backward);
 
 /// Two states at one instant, weighted by their information,
 ///
-///     d = error of forward against backward,   W = P_f (P_f + P_b)^-1,   P = (I - W) P_f (I - W)' + W P_b W'
+///     d = error of forward relative to backward,   W = P_f (P_f + P_b)^-1,   P = (I - W) P_f (I - W)' + W P_b W'
 ///
-/// and W d taken off the forward state. P is (P_f^-1 + P_b^-1)^-1 without an inverse of either. What both filters knew
-/// beforehand of the states beyond the ninth (zero, with a variance each) is then taken out once: exact where that variance
-/// does not change with time.
+/// and W d is subtracted from the forward state. P is (P_f^-1 + P_b^-1)^-1 without an inverse of either. Both filters used the
+/// prior of the states after the ninth (zero, with a variance each); it is then removed once: exact if that variance does not
+/// change with time.
 /// @param forward, backward  x of m >= 9 elements, P m x m, e frame, navigation states first
-/// @param prior_variance     m - 9 values; zero: a state that both know
+/// @param prior_variance     m - 9 values; zero: a state known to both
 /// @throws NumericalError  P_f + P_b is not positive definite
 /// @see  Fraser, Potter (1969): The optimum linear smoother as a combination of two optimum linear filters, IEEE Trans. AC
 /// 14(4)
@@ -34,15 +34,15 @@ namespace coast::estimate {
                                         const Eigen::VectorXd& prior_variance);
 
 /// The backward filter at the knots of a forward one, before the updates there. Navigation and auxiliary states with their
-/// covariance stand in a KnotStore, so that memory does not grow with the mission; sensor states at sampled knots in memory.
+/// covariance are in a KnotStore, so that memory does not grow with the mission; sensor states at sampled knots are in memory.
 class BackwardKnots {
  public:
   /// @param at      times of the forward filter's knots, ascending
-  /// @param begin   what the backward filter begins with, in forward time: its variances are what both know beforehand
-  /// @param states  knots that keep sensor states
+  /// @param begin   start state of the backward filter, in forward time: its variances are the prior of both filters
+  /// @param states  knots for which sensor states are stored
   BackwardKnots(const StateLayout& layout, std::vector<geo::GpsTime> at, const FilterState& begin,
                 const KnotSampling& states = KnotSampling{});
-  /// A state in forward time; they come from the last to the first. What stands at no knot is passed over.
+  /// Adds a state in forward time, in order from the last to the first. States that are not at a knot are ignored.
   void add(const FilterState& state);
 
   struct Sensors {
@@ -50,12 +50,12 @@ class BackwardKnots {
     Eigen::VectorXd variance;  ///< likewise
   };
   [[nodiscard]] std::size_t size() const { return at_.size(); }
-  /// Navigation and auxiliary states; nothing where the backward filter has not been.
+  /// Navigation and auxiliary states; nothing if the backward filter did not reach this knot.
   [[nodiscard]] std::optional<FilterState> at(std::size_t knot) const;
-  /// Null where they are not kept.
+  /// Null if they are not stored.
   [[nodiscard]] const Sensors* sensors(std::size_t knot) const;
   [[nodiscard]] bool keeps_sensors(std::size_t knot) const;
-  /// What both filters know beforehand, size of the layout.
+  /// Prior variance of both filters, size of the layout.
   [[nodiscard]] const Eigen::VectorXd& prior_variance() const { return prior_variance_; }
 
  private:
@@ -66,31 +66,31 @@ class BackwardKnots {
   Eigen::VectorXd prior_variance_;
   std::size_t left_;  ///< knots that the backward filter has not passed
   KnotStore store_;
-  std::vector<std::optional<std::size_t>> place_;  ///< of a knot in the store
+  std::vector<std::optional<std::size_t>> place_;  ///< index of a knot in the store
   std::map<std::size_t, Sensors> sensors_;
 };
 
 struct Combination {
   std::vector<SmoothedKnot> knots;
-  record::Events events;  ///< `combination_refused`: where nothing was averaged
+  record::Events events;  ///< `combination_refused`: no weighted mean was formed
 };
 
-/// The combined solution: at every knot the forward filter after its updates and the backward filter before them, which have no
-/// measurement in common.
+/// The combined solution: at every knot the forward filter after its updates with the backward filter before them, so that no
+/// measurement is used twice.
 ///
-/// Where their contradiction() is beyond what one knot in 1e6 of consistent filters reaches, nothing is averaged: the one with
-/// the smaller trace of its position covariance is delivered with its own covariance, and the solution jumps there
-/// (SmoothedKnot::jumps). It stays that one until the other has less than half its trace, and nothing is averaged again before
-/// the contradiction is less than one knot in a thousand has, so that it does not jump to and fro at a bound.
+/// If their contradiction() exceeds the value that consistent filters exceed at one knot in 1e6, no mean is formed: the
+/// solution with the smaller trace of the position covariance is used with its own covariance, and the result jumps there
+/// (SmoothedKnot::jumps). It is kept until the other has less than half its trace, and averaging resumes only when the
+/// contradiction is below the value exceeded at one knot in a thousand; this hysteresis avoids repeated jumps.
 ///
 /// Not the fixed-interval smoother (smooth()). Navigation and auxiliary states are weighted together by their full covariances,
-/// sensor errors each by itself: what they have in common with the navigation states is lost, and what both filters take from
-/// the error model rather than from measurements counts twice. A bias that neither has learned moves both positions the same
-/// way, whose sigma is then too small, by sqrt(2) at the utmost, and both velocities oppositely, whose sigma is too large.
-/// Without sensor states it is the smoother but for the ends. In simulated outages of 30 s, from tactical to consumer sensors,
-/// position sigmas held, those of velocity were up to a quarter too large, and errors 1 to 20 % larger than the smoother's
-/// (docs/solutions.md).
-/// @param forward  knots of a forward pass; carrier slots are as there
+/// sensor errors individually: their correlation with the navigation states is lost, and information that both filters take
+/// from the error model rather than from measurements counts twice. A bias that neither filter has estimated moves both
+/// positions the same way, so the position sigma is too small, by at most sqrt(2), and both velocities in opposite directions,
+/// so the velocity sigma is too large. Without sensor states the result equals the smoother except at the ends. In simulated
+/// outages of 30 s, from tactical to consumer sensors, position sigmas were correct, velocity sigmas were up to a quarter too
+/// large, and errors were 1 to 20 % larger than those of the smoother (docs/solutions.md).
+/// @param forward  knots of a forward pass; carrier slots are those of this pass
 [[nodiscard]] Combination combine(const KnotStore& forward, const BackwardKnots& backward, const StateLayout& layout,
                                   const std::function<void(double)>& progress = {});
 

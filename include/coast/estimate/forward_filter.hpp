@@ -24,7 +24,8 @@ struct TimeSpan {
   [[nodiscard]] bool contains(geo::GpsTime t) const { return from <= t && t < to; }
 };
 
-/// GNSS that the filter does not see. A tightly coupled one sees the highest satellites if some are left.
+/// Period in which GNSS is withheld from the filter. With tight coupling, `satellites_left` satellites of highest elevation
+/// remain.
 struct Withheld {
   geo::GpsTime from;
   geo::GpsTime to;
@@ -32,28 +33,28 @@ struct Withheld {
   [[nodiscard]] bool contains(geo::GpsTime t) const { return from <= t && t < to; }
 };
 
-/// What is known of the motion behind a long gap of the IMU without what was before it: by then the heading may be any, and a
-/// linear filter does not find it back.
+/// State after a long IMU gap, determined without data from before the gap: the heading may then be arbitrary, and a linear
+/// filter does not recover it.
 struct Restart {
-  record::NavState nav;  ///< takes the place of the filter's attitude at nav.t; of position and velocity where those are lost
+  record::NavState nav;  ///< replaces the filter's attitude at nav.t, and position and velocity if those are lost
   Eigen::Vector3d sd_position_n;
   Eigen::Vector3d sd_velocity_n;
-  std::optional<Eigen::Vector3d> sd_attitude_n;  ///< rotations about N, E, D; absent: the attitude stays the filter's
+  std::optional<Eigen::Vector3d> sd_attitude_n;  ///< rotations about N, E, D; absent: the filter's attitude is kept
 };
 
-/// What is filtered. The recordings must outlive the filter.
+/// Input of the filter. The recordings must outlive the filter.
 struct Mission {
   const record::ImuRecording& imu;  ///< body axes
   const record::GnssRecording& gnss;
   ins::IncrementKind increments = ins::IncrementKind::kRaw;
-  Eigen::Matrix3d C_s_b = Eigen::Matrix3d::Identity();  ///< the error model lives in sensor axes
+  Eigen::Matrix3d C_s_b = Eigen::Matrix3d::Identity();  ///< the error model is in sensor axes
   Eigen::Vector3d lever_arm_b = Eigen::Vector3d::Zero();
   double time_offset_s = 0.0;             ///< a fix tagged t is valid at t - offset
-  std::vector<TimeSpan> standstill = {};  ///< in order; zero-velocity updates where asked for
-  double earth_rate = geo::kEarthRate;    ///< negative for a recording run backwards
-  /// Where known drifts are zero; where absent, the beginning of the recording.
+  std::vector<TimeSpan> standstill = {};  ///< in order; used for zero-velocity updates if these are enabled
+  double earth_rate = geo::kEarthRate;    ///< negative for a time-reversed recording
+  /// Epoch at which known drifts are zero; if absent, the start of the recording.
   std::optional<geo::GpsTime> first_epoch = {};
-  /// Tight coupling: these are used in place of the fixes. Must outlive the filter.
+  /// Tight coupling: used instead of the fixes. Must outlive the filter.
   const CarrierObservations* carrier = nullptr;
   std::vector<Restart> restarts = {};  ///< ascending; each becomes a knot
 };
@@ -65,29 +66,29 @@ struct GnssScale {
   double velocity = 1.0;
 };
 
-/// What is known of a vehicle's motion.
+/// Constraints on the motion of a vehicle.
 struct VehicleConstraints {
   std::optional<NonHolonomic> non_holonomic;
   std::optional<double> zero_velocity_sd_mps;
-  double interval_s = 0.5;     ///< at most one of each per interval: slips last, they are not new every sample
-  double min_speed_mps = 0.2;  ///< below it only standstill says something
+  double interval_s = 0.5;     ///< at most one of each per interval: slip errors are correlated in time
+  double min_speed_mps = 0.2;  ///< below it only zero-velocity updates are used
 };
 
 struct FilterOptions {
   AuxiliaryStates auxiliary;
   GnssScale gnss_scale;
   bool use_gnss_velocity = true;
-  double gate_probability = 1e-6;  ///< share of good fixes that the gate may refuse; 0: no gate
-  double gate_patience_s = 3.0;    ///< fixes refused for longer are taken: it is the filter that is wrong
-  double knot_interval_s = 0.5;    ///< longest interval between knots
-  /// Further instants that become knots, ascending.
+  double gate_probability = 1e-6;  ///< probability that the gate rejects a good fix; 0: no gate
+  double gate_patience_s = 3.0;  ///< after fixes have been rejected for longer they are used: then the filter is assumed wrong
+  double knot_interval_s = 0.5;  ///< longest interval between knots
+  /// Additional instants that become knots, ascending.
   std::vector<geo::GpsTime> knots_at = {};
   VehicleConstraints vehicle;
   std::vector<Withheld> withheld;
 };
 
-/// One innovation, resolved for people: GNSS in N, E, D; non-holonomic as lateral, vertical in the first two; of carrier phases
-/// what they move the antenna by; of a member's difference its axes.
+/// One innovation in axes for display: GNSS in N, E, D; non-holonomic: lateral and vertical in the first two; carrier phases:
+/// the resulting change of antenna position; member difference: its axes.
 struct InnovationRecord {
   geo::GpsTime t;
   UpdateKind kind = UpdateKind::kGnssPosition;
@@ -96,41 +97,41 @@ struct InnovationRecord {
   Eigen::Vector3d nu = Eigen::Vector3d::Zero();
   Eigen::Vector3d sd = Eigen::Vector3d::Zero();  ///< square roots of the diagonal of S
   double nis = 0.0;
-  double largest_sd = 0.0;  ///< square root of the largest eigenvalue of S: what the gate can see
+  double largest_sd = 0.0;  ///< square root of the largest eigenvalue of S: the scale of errors that the gate can detect
   record::FixQuality quality = record::FixQuality::kUnknown;
 };
 
-/// Which measurement of a mission: what is needed to linearise it again.
+/// Identifies a measurement of a mission, so that it can be linearised again.
 struct Measurement {
   UpdateKind kind = UpdateKind::kGnssPosition;
   std::size_t index = 0;                        ///< of the fix, or of the members' block
   noise::Sensor sensor = noise::Sensor::kGyro;  ///< of a member's difference
   std::size_t member = 0;                       ///< likewise
-  std::vector<std::size_t> left_out = {};       ///< likewise: members refused in this block
+  std::vector<std::size_t> left_out = {};       ///< likewise: members rejected in this block
 };
 
-/// Positions that differ from one instant on and were refused, until they were followed.
+/// A jump: positions that differed from an instant on and were rejected, until the filter accepted them.
 struct GnssJump {
   geo::GpsTime t;
-  Eigen::Vector3d by_n;  ///< fixes less filter where they were followed, north east down, m
+  Eigen::Vector3d by_n;  ///< fixes minus filter when they were accepted, north east down, m
 };
 
 struct FilterResult {
   FilterState last;
   std::vector<InnovationRecord> innovations;
-  double log_likelihood = 0.0;  ///< of the used updates' innovations
+  double log_likelihood = 0.0;  ///< of the innovations that were used
   std::vector<GnssJump> jumps;
   record::Events events;  ///< `gnss_jump` of each, among others
 };
 
-/// Where a pass delivers; every member may be empty.
+/// Outputs of a pass; every member may be empty.
 struct FilterOutputs {
   KnotStore* knots = nullptr;
-  /// What `knots` keeps, one at a time, with the white noise of its interval; called at the knot that ends it.
+  /// Each knot as stored in `knots`, with the white noise of its interval; called at the knot that ends the interval.
   std::function<void(const Knot&, const WhiteNoise&)> closed_knots = {};
   record::EpochSink epochs;                          ///< filtered state at IMU epochs
   std::function<void(const FilterState&)> at_knots;  ///< before the knot's updates
-  /// Every measurement, and whether it was used, at the knot that comes next. Not of carrier phases.
+  /// Every measurement, and whether it was used; called at the next knot. Not for carrier phases.
   std::function<void(const Measurement&, bool)> measurements;
   std::function<void(double)> progress;  ///< fraction done
 };
@@ -138,12 +139,12 @@ struct FilterOutputs {
 class ForwardFilter {
  public:
   /// @throws std::invalid_argument  an option is out of its range
-  /// @throws InputError  members that are not those of the error model, or without white noise in it
+  /// @throws InputError  members that differ from those of the error model, or that have no white noise in it
   ForwardFilter(const Mission& mission, const noise::ImuErrorModel& model, const FilterOptions& options);
 
   [[nodiscard]] const StateLayout& layout() const { return layout_; }
-  /// Covariance of a start: navigation standard deviations in N, E, D, the rest from the error model. Sensor states have
-  /// the means that the model knows beforehand, as they are at nav.t.
+  /// Initial state and covariance: navigation standard deviations in N, E, D, the rest from the error model. Sensor states have
+  /// the prior means of the model, propagated to nav.t.
   [[nodiscard]] FilterState initial_state(const record::NavState& nav, const Eigen::Vector3d& sd_position_n,
                                           const Eigen::Vector3d& sd_velocity_n, const Eigen::Vector3d& sd_attitude_n) const;
 
@@ -152,7 +153,7 @@ class ForwardFilter {
   [[nodiscard]] FilterResult run(const FilterState& start, const FilterOutputs& outputs) const;
   /// The same up to `end`.
   [[nodiscard]] FilterResult run_until(const FilterState& start, geo::GpsTime end, const FilterOutputs& outputs) const;
-  /// Filters on from a knot (its updates are done) to `end`: what an outage study repeats.
+  /// Continues from a knot (after its updates) to `end`: used repeatedly by an outage study.
   [[nodiscard]] FilterResult resume(const Knot& knot, geo::GpsTime end, const FilterOutputs& outputs) const;
 
  private:
@@ -163,7 +164,7 @@ class ForwardFilter {
 };
 
 /// Increment of sample `index` that begins at `now`: a gap before the sample is bridged with the sample's own mean rate.
-/// @param remainder  what is left of the sample where a knot split it; dt = 0: nothing was used
+/// @param remainder  remaining part of the sample if a knot split it; dt = 0: the sample is unused
 [[nodiscard]] ins::RawIncrement increment_from(const record::ImuRecording& imu, std::size_t index,
                                                const ins::RawIncrement& remainder, geo::GpsTime now);
 

@@ -1,5 +1,5 @@
 #pragma once
-// What lies behind a knot, said so that another run of the filter can use it.
+// Information from all measurements after a knot, in a form that another run of the filter can use.
 
 #include <Eigen/Core>
 #include <span>
@@ -10,15 +10,16 @@
 
 namespace coast::estimate {
 
-/// What all measurements behind a knot's updates say about the state there, whatever was filtered before: their likelihood, a
-/// quadratic in d = nominal - truth with the smoother's transitions,
+/// Likelihood of all measurements after a knot's updates as a function of the state there, independent of earlier measurements:
+/// a quadratic in d = nominal - truth with the smoother's transitions,
 ///
 ///     -2 log p = d' L d - 2 l' d + constant
 ///
-/// With P of any filter that arrives at the same instant, r = (I + L P)^-1 l and N = (I + L P)^-1 L continue its smoother as if
-/// it had filtered them itself (Fraser & Potter 1969, two filters; here only the backward one's information is kept).
+/// With P of any filter at the same instant, r = (I + L P)^-1 l and N = (I + L P)^-1 L continue its smoother as if it had
+/// processed these measurements itself (Fraser & Potter 1969, two filters; here only the information of the backward filter is
+/// stored).
 struct Future {
-  record::NavState nav;         ///< the nominal state it is about
+  record::NavState nav;         ///< nominal state at which the likelihood is expanded
   Eigen::VectorXd x;            ///< likewise, sensor and auxiliary states
   Eigen::MatrixXd information;  ///< L, n x n, symmetric
   Eigen::VectorXd vector;       ///< l, n

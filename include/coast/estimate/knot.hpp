@@ -1,5 +1,5 @@
 #pragma once
-// What the forward pass leaves behind at every knot (measurement epoch or filler), for smoother, outages and output.
+// Data stored by the forward pass at every knot (measurement epoch or filler), for smoother, outages and output.
 
 #include <Eigen/Core>
 #include <cmath>
@@ -16,29 +16,29 @@
 namespace coast::estimate {
 
 struct Knot {
-  // State after the knot's updates, from which the nominal trajectory goes on.
+  // State after the knot's updates, from which the nominal trajectory continues.
   Navigator::Start post;
   Eigen::MatrixXd P_post;
   std::vector<AppliedUpdate> updates;  ///< in the order applied
-  /// Names of the carrier slots; a position stands for a free one.
+  /// Names of the carrier slots; kPosition marks a free one.
   std::vector<carrier::Unknown> slots;
-  /// What the slots were multiplied with before the updates: 0 where an unknown began or ended; empty: nothing.
+  /// Factors on the slots before the updates: 0 if an unknown began or ended; empty: all 1.
   Eigen::VectorXd slot_factors;
-  // Where in the recording the knot stands: sample `next_sample` is the first not fully used, `remainder` what is left of it.
+  // Place of the knot in the recording: sample `next_sample` is the first not fully used, `remainder` is its unused part.
   std::size_t next_sample = 0;
-  ins::RawIncrement remainder;  ///< dt = 0: the sample is untouched
+  ins::RawIncrement remainder;  ///< dt = 0: the sample is unused
   // Transition to the next knot; empty at the last one.
   double interval = 0.0;
   NavRows Phi_n = NavRows(kNav, 0);
 };
 
-/// Which knots somebody keeps who has no use for all: of each interval of a fixed grid in time the first. The same ones in
-/// whatever direction one comes along.
+/// Selects some of the knots for storage: the first one in each interval of a fixed time grid. The selection is the same in
+/// both directions of processing.
 class KnotSampling {
  public:
   KnotSampling() = default;  ///< every knot
   explicit KnotSampling(double interval_s) : interval_s_(interval_s) {}
-  /// @param previous  the knot before in time; the first knot is always taken
+  /// @param previous  the previous knot in time; the first knot is always selected
   [[nodiscard]] bool takes(std::optional<geo::GpsTime> previous, geo::GpsTime t) const {
     return !previous || !(interval_s_ > 0.0) || cell(*previous) != cell(t);
   }
@@ -48,17 +48,17 @@ class KnotSampling {
   double interval_s_ = 0.0;
 };
 
-/// Knots in the order of time, read in any order. Kept in memory up to a limit, beyond it in an unnamed temporary file, so that
-/// ten hours at 10 Hz need no more memory than one.
+/// Knots in time order, with random read access. Stored in memory up to a limit, then in an unnamed temporary file, so that ten
+/// hours at 10 Hz need no more memory than one.
 class KnotStore {
  public:
   explicit KnotStore(std::size_t memory_limit_bytes = std::size_t{64} << 20);
   void append(const Knot& knot);
-  /// Leaves no knot, and the memory for those of another pass.
+  /// Removes all knots; the memory is kept for another pass.
   void clear();
   [[nodiscard]] std::size_t size() const { return offsets_.size(); }
   [[nodiscard]] Knot at(std::size_t index) const;
-  /// What the nominal trajectory goes on from, and the interval; covariance, transition and updates are empty.
+  /// Only the start of the nominal trajectory and the interval; covariance, transition and updates are empty.
   [[nodiscard]] Knot nominal_at(std::size_t index) const;
   [[nodiscard]] geo::GpsTime time(std::size_t index) const { return times_[index]; }
 

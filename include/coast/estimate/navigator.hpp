@@ -1,5 +1,6 @@
 #pragma once
-// The nominal trajectory between two corrections: raw increments, freed of the estimated sensor errors, through the strapdown.
+// The nominal trajectory between two corrections: strapdown integration of increments corrected for the estimated sensor
+// errors.
 
 #include <Eigen/Core>
 
@@ -10,31 +11,31 @@
 
 namespace coast::estimate {
 
-/// Runs forward deterministically: started again from the same state it repeats the same nominal trajectory (to 2e-9 m/s^2, by
-/// where the strapdown last renewed its gravity), which is how smoothed epochs between knots are made without storing the
-/// IMU-rate trajectory.
+/// Deterministic: from the same state it repeats the same nominal trajectory (to 2e-9 m/s^2, depending on where the strapdown
+/// last recomputed gravity). Smoothed epochs between knots are computed this way, without storing the IMU-rate trajectory.
 class Navigator {
  public:
   Navigator(const StateLayout& layout, ins::IncrementKind kind, double earth_rate);
 
-  /// Everything that decides how the nominal trajectory goes on.
+  /// Everything that determines the further nominal trajectory.
   struct Start {
     record::NavState nav;
     Eigen::VectorXd x;           ///< size of the layout
-    ins::RawIncrement previous;  ///< corrected increment before, for coning; dt = 0 where there is none
+    ins::RawIncrement previous;  ///< previous corrected increment, for coning; dt = 0 if there is none
   };
   void set(const Start& start);
-  /// Position, velocity, attitude and sensor states after an update; the time and the previous increment stay.
+  /// Position, velocity, attitude and sensor states after an update; the time and the previous increment are unchanged.
   void correct(const record::NavState& nav, const Eigen::VectorXd& x);
 
-  /// One step with an increment as recorded (body axes). @return what the covariance needs of it
+  /// One step with an increment as recorded (body axes). @return the data needed for the covariance
   const SampleDynamics& propagate(const ins::RawIncrement& raw);
-  /// What this IMU, with its estimated errors, would record over `dt` at constant velocity and attitude against the Earth.
+  /// The increment that this IMU, with its estimated errors, would record over `dt` at constant velocity and attitude relative
+  /// to the Earth.
   [[nodiscard]] ins::RawIncrement coasting(double dt) const;
-  /// The two parts of an increment as recorded that a knot inside it makes.
-  /// @param fraction  of its interval, of the first part
+  /// The two parts of a recorded increment that is split by a knot.
+  /// @param fraction  length of the first part over the interval
   [[nodiscard]] ins::SplitIncrement split(const ins::RawIncrement& raw, double fraction) const;
-  /// Moves the estimated sensor states over the time since the last call. Call where the transition is folded.
+  /// Propagates the estimated sensor states over the time since the last call. Call whenever the transition is folded.
   void advance_sensor_states();
   void set_time(geo::GpsTime t) { strapdown_.set_time(t); }
 
@@ -42,14 +43,15 @@ class Navigator {
   [[nodiscard]] const Eigen::VectorXd& x() const { return x_; }
   [[nodiscard]] const ins::RawIncrement& previous() const { return previous_; }
   [[nodiscard]] const Eigen::Matrix3d& gravity_gradient() const { return strapdown_.gravity_gradient(); }
-  /// Rate against the Earth now, between the last step and the increment that follows, body axes, rad/s. With one of them alone
-  /// it would be half an interval old or early: millimetres a second at a lever arm of a metre in a shaking body.
-  /// @param next  as recorded; dt = 0 where there is none
+  /// Angular rate relative to the Earth at the current time, mean of the last step and the next increment, body axes, rad/s.
+  /// With only one of them it would be half an interval late or early: an error of mm/s at a lever arm of 1 m in a shaking
+  /// body.
+  /// @param next  as recorded; dt = 0 if there is none
   [[nodiscard]] Eigen::Vector3d omega_eb_b(const ins::RawIncrement& next) const;
 
  private:
   void refresh_corrections();
-  /// Freed of the estimated errors.
+  /// Corrected for the estimated errors.
   [[nodiscard]] ins::RawIncrement without_errors(const ins::RawIncrement& raw) const;
 
   const StateLayout& layout_;

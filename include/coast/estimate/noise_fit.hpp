@@ -1,5 +1,5 @@
 #pragma once
-// GNSS and IMU noise that make the innovations as likely as possible.
+// Maximum-likelihood fit of GNSS and IMU noise to the innovations.
 
 #include <functional>
 #include <string>
@@ -9,7 +9,7 @@
 
 namespace coast::estimate {
 
-/// What multiplies or adds to the stated noise. The neutral value changes nothing.
+/// Factors on and additions to the stated noise. The default values change nothing.
 struct NoiseAdjustment {
   GnssScale gnss_scale;
   CorrelatedGnss correlated_gnss;
@@ -22,38 +22,39 @@ struct NoiseFitChoice {
   bool gnss_scale = true;
   bool correlated_gnss = true;
   bool imu_white_noise = false;
-  bool to_the_optimum = true;  ///< false: a first look, to a tenth of a sigma, without deviations and a second round
+  bool to_the_optimum = true;  ///< false: preliminary, to a tenth of a sigma, without log_sd and a second round
 };
 
-/// Where a parameter ended: between its bounds, or on one. On the lower one of an amplitude, or of a factor on GNSS sigmas
-/// beside a correlated error, the innovations ask for none of it.
+/// Whether a parameter ended on one of its bounds. On the lower bound of an amplitude, or of a factor on GNSS sigmas combined
+/// with a correlated error, the innovations show no such noise.
 enum class Bound { kNone, kLower, kUpper };
 
 struct NoiseFit {
   NoiseAdjustment adjustment;
   double log_likelihood_before = 0.0;  ///< with the stated noise
   double log_likelihood_after = 0.0;
-  std::size_t innovations = 0;  ///< position and velocity innovations that entered
+  std::size_t innovations = 0;  ///< position and velocity innovations used
   int evaluations = 0;          ///< passes of the filter
-  /// Standard deviations of the logarithms of the free parameters, in the order of `names`: by the second derivatives at the
-  /// optimum, each with all others free; infinite where the innovations do not tell it.
+  /// Standard deviations of the logarithms of the free parameters, in the order of `names`: from the second derivatives at the
+  /// optimum, each with all others free; infinite if the innovations do not determine it.
   std::vector<std::string> names;
   std::vector<double> log_sd;
   std::vector<Bound> bounds;  ///< in the same order
-  /// By how much the log-likelihood falls where one of them is as stated (an amplitude: none) and the others are as they are.
+  /// Decrease of the log-likelihood if one parameter is reset to its stated value (an amplitude: to none) and the others are
+  /// kept.
   std::vector<double> needed;
 };
 
 [[nodiscard]] noise::ImuErrorModel adjusted(const noise::ImuErrorModel& model, const NoiseAdjustment& adjustment);
 [[nodiscard]] FilterOptions adjusted(const FilterOptions& options, const NoiseAdjustment& adjustment);
 
-/// Where a first search begins: the noise of `options`, with a small correlated error where that is free and none is stated.
+/// Start of a first search: the noise of `options`, with a small correlated error if that is free and none is stated.
 [[nodiscard]] NoiseAdjustment starting_point(const FilterOptions& options, const NoiseFitChoice& choice);
 
 /// Maximum likelihood of the innovations (prediction-error decomposition; Harvey 1989, section 3.4) over the logarithms of the
-/// free parameters, by Newton's steps with exact scores: each is a pass of the filter and one backward over its knots. The gate
-/// is open while fitting: what the final filter then refuses is left out and the fit repeated once.
-/// @param from   where the search begins; what is not free keeps its value
+/// free parameters, by Newton steps with exact scores: each needs a filter pass and a backward pass over its knots. The gate is
+/// disabled while fitting; measurements that the final filter then rejects are left out and the fit is repeated once.
+/// @param from   start of the search; parameters that are not free keep their value
 /// @param start  state at the first epoch, covariance from ForwardFilter::initial_state
 /// @throws NumericalError  the filter fails at the start values
 [[nodiscard]] NoiseFit fit_noise(const Mission& mission, const noise::ImuErrorModel& model, const FilterOptions& options,

@@ -1,5 +1,6 @@
 #pragma once
-// Sparse symmetric positive definite systems: solution, log determinant, and those elements of the inverse that are cheap.
+// Sparse symmetric positive definite systems: solution, log determinant, and the elements of the inverse on the pattern of the
+// factor.
 
 #include <Eigen/Core>
 #include <Eigen/SparseCore>
@@ -9,11 +10,12 @@
 
 namespace coast::estimate {
 
-/// Lower triangle of a symmetric matrix, row by row: CHOLMOD takes it as it lies. By columns it would copy it.
+/// Lower triangle of a symmetric matrix, row by row: CHOLMOD uses this format without a copy; stored by columns it would be
+/// copied.
 using LowerTriangle = Eigen::SparseMatrix<double, Eigen::RowMajor>;
 
-/// Elements of the inverse of a symmetric positive definite matrix on the pattern of its Cholesky factor, which holds that of
-/// the matrix itself: whatever two unknowns the matrix ties to each other, their covariance is here.
+/// Elements of the inverse of a symmetric positive definite matrix on the pattern of its Cholesky factor, which contains that
+/// of the matrix itself: the covariance of any two unknowns coupled in the matrix is available.
 class SelectedInverse {
  public:
   /// Element (i, j) = (j, i), found by bisection.
@@ -28,22 +30,21 @@ class SelectedInverse {
   friend class SparseCholesky;
   SelectedInverse() = default;
 
-  std::shared_ptr<const void> factor_;  // whose memory the elements took over
+  std::shared_ptr<const void> factor_;  // its memory holds the elements of the inverse
   std::span<const int> starts_, rows_;  // of the columns, in elimination order
   std::span<const double> values_;
   Eigen::VectorXi position_;  // of every row in that order
 };
 
 /// P A P' = L L' of a sparse symmetric positive definite A, by CHOLMOD (Chen, Davis, Hager & Rajamanickam 2008, ACM TOMS
-/// 35:22). Element by element (simplicial), never in dense blocks: no BLAS is called, and the numbers do not change with the
-/// one that is installed.
-/// @note  Const, but CHOLMOD's workspace is shared: an object belongs to one thread at a time. A moved-from one can only be
+/// 35:22). Simplicial, without dense blocks: no BLAS is called, so results do not depend on the installed BLAS.
+/// @note  Const functions share CHOLMOD's workspace: only one thread at a time may use an object. A moved-from one can only be
 ///        destroyed or assigned to.
 class SparseCholesky {
  public:
-  /// Chooses the elimination order P and analyses L once for all factorizations. An order is natural if that fills nothing (a
-  /// chain of links with the border last), else natural or approximate minimum degree, whichever fills less.
-  /// @param lower  compressed; of its values none is looked at, of an upper triangle nothing at all
+  /// Chooses the elimination order P and analyses L once for all factorizations. Natural order if it causes no fill-in (a chain
+  /// with the border last), else natural or approximate minimum degree, whichever gives less fill-in.
+  /// @param lower  compressed; only its pattern is used; an upper triangle is ignored
   /// @throws std::invalid_argument  not square, not compressed
   explicit SparseCholesky(const LowerTriangle& lower);
   ~SparseCholesky();
@@ -51,18 +52,18 @@ class SparseCholesky {
   SparseCholesky& operator=(SparseCholesky&&) noexcept;
 
   /// @param lower  the pattern of the constructor, stored zeros included
-  /// @throws NumericalError  not positive definite, or not finite; names the column at which elimination ended. There is no
-  ///                         factor then.
+  /// @throws NumericalError  not positive definite, or not finite; names the column at which elimination stopped. There is no
+  ///                         factor afterwards.
   /// @throws std::invalid_argument  another pattern
   void factorize(const LowerTriangle& lower);
 
-  /// A^-1 b. This and the following need a factor: @throws std::logic_error  there is none
+  /// A^-1 b. This and the following functions need a factor: @throws std::logic_error  there is none
   [[nodiscard]] Eigen::VectorXd solve(const Eigen::VectorXd& b) const;
   [[nodiscard]] double log_determinant() const;
 
   /// Condition number of A with its unknowns scaled so that the diagonal is one: largest over smallest eigenvalue, by power
-  /// iterations with L L' and its inverse until they move by less than a percent (no more than `most` of each). Iterations
-  /// approach from below. A solution by normal equations is off by some 1e-17 to 1e-16 times this, of its standard deviations.
+  /// iterations with L L' and its inverse until they change by less than a percent (at most `most` of each). They converge from
+  /// below. The error of a solution by normal equations, in standard deviations, is some 1e-17 to 1e-16 times this.
   [[nodiscard]] double condition(int most = 30) const;
 
   /// Elements of A^-1 on the pattern of L + L' by the recursion of Takahashi, Fagan & Chen (1973) and Erisman & Tinney (1975,
@@ -71,10 +72,10 @@ class SparseCholesky {
   ///     Z_ij = - sum_{k > j} Z_ik l_kj,   i > j,        Z_jj = 1 / L_jj^2 - sum_{k > j} l_kj Z_kj
   ///
   /// i and k over the pattern of column j of L: the sums stay inside the pattern of L. About as many operations as the
-  /// factorization: the sum of the squared lengths of its columns. Made where L was: there is no factor afterwards.
+  /// factorization: the sum of the squared lengths of its columns. The inverse overwrites L: there is no factor afterwards.
   [[nodiscard]] SelectedInverse invert();
 
-  /// Of L, diagonal included; known from the analysis.
+  /// Number of entries of L, diagonal included; known from the analysis.
   [[nodiscard]] std::size_t factor_entries() const;
 
  private:

@@ -1,5 +1,5 @@
 #pragma once
-// Which error states the filter carries, in which order, and how each acts.
+// The error states of the filter: their order and their effect.
 
 #include <Eigen/Core>
 #include <optional>
@@ -16,21 +16,22 @@ inline constexpr int kVel = 3;
 inline constexpr int kPsi = 6;
 inline constexpr int kNav = 9;
 
-/// GNSS position errors that last from fix to fix: a stationary Gauss-Markov process each in N, E, D at the antenna.
+/// Time-correlated GNSS position errors: a stationary Gauss-Markov process each in N, E, D at the antenna.
 struct CorrelatedGnss {
   double horizontal_m = 0.0;  ///< stationary sd per axis, 0: none
   double vertical_m = 0.0;
   double time_s = 60.0;  ///< correlation time
 };
 
-/// What is estimated beside the IMU's errors. A standard deviation of zero leaves the states out.
+/// States estimated in addition to the IMU errors. A standard deviation of zero leaves the states out.
 struct AuxiliaryStates {
   double lever_arm_sd_m = 0.0;    ///< prior sd of each component, body axes
   double time_offset_sd_s = 0.0;  ///< prior sd of the GNSS time offset
-  double mounting_sd = 0.0;       ///< prior sd of the vehicle's yaw and pitch against the body, rad
-  double base_offset_sd_m = 0.0;  ///< prior sd of what all GNSS positions are off by, each component in e
+  double mounting_sd = 0.0;       ///< prior sd of the vehicle's yaw and pitch relative to the body, rad
+  double base_offset_sd_m = 0.0;  ///< prior sd of the common error of all GNSS positions, each component in e
   CorrelatedGnss correlated_gnss = {};
-  /// Room for unknowns of carrier-phase observations, which come and go: constant states without prior, nameless here.
+  /// Number of states reserved for unknowns of carrier-phase observations, which begin and end: constant states without prior,
+  /// unnamed here.
   int carrier_slots = 0;
 };
 
@@ -52,17 +53,17 @@ class StateLayout {
     std::optional<Eigen::Vector3d> signal_b;
     int axis = 0;                       ///< of the sensor
     std::optional<int> signal_axis;     ///< the same as signal_b
-    std::optional<std::size_t> member;  ///< index in members(): whose error it is where several IMUs were merged
-    Eigen::RowVectorXd own_output;      ///< what the states add to that member's error, in the axes of the sum
+    std::optional<std::size_t> member;  ///< index in members(): IMU that it belongs to, if several IMUs were merged
+    Eigen::RowVectorXd own_output;      ///< contribution of the states to that member's error, in the axes of the sum
   };
-  /// One of several IMUs that were merged, where the error model has shares.
+  /// One of several merged IMUs, if the error model has shares.
   struct Member {
     std::string name;
     Eigen::Vector3d gyro_density = Eigen::Vector3d::Zero();  ///< of its own white noise, [signal]^2/Hz, sensor axes
     Eigen::Vector3d accel_density = Eigen::Vector3d::Zero();
   };
 
-  /// @param C_s_b sensor to body axes: processes live in sensor axes
+  /// @param C_s_b sensor to body axes: processes are in sensor axes
   StateLayout(const noise::ImuErrorModel& model, const Eigen::Matrix3d& C_s_b, const AuxiliaryStates& auxiliary);
 
   [[nodiscard]] int size() const { return size_; }
@@ -80,8 +81,8 @@ class StateLayout {
   /// White-noise densities in body axes, [signal]^2/Hz.
   [[nodiscard]] const Eigen::Matrix3d& gyro_density_b() const { return gyro_density_b_; }
   [[nodiscard]] const Eigen::Matrix3d& accel_density_b() const { return accel_density_b_; }
-  /// Shortest correlation time of any sensor state, s; infinity where all are constant. Auxiliary states are exact over any
-  /// interval.
+  /// Shortest correlation time of any sensor state, s; infinity if all are constant. Auxiliary states are propagated exactly
+  /// over any interval.
   [[nodiscard]] double shortest_time() const { return shortest_time_; }
 
   /// Covariance of the non-navigation states at the start (size x size, navigation rows zero).
@@ -115,19 +116,19 @@ class StateLayout {
   double shortest_time_ = 0.0;
 };
 
-/// D and Q_d of the sensor and auxiliary states over one interval, kept until another interval is asked for: most intervals of
-/// a mission are alike. Matrices that it works on have size() - kNav rows: row 0 is state kNav.
+/// D and Q_d of the sensor and auxiliary states over one interval, cached until another interval is requested: most intervals
+/// of a mission are equal. The matrices passed in have size() - kNav rows: row 0 is state kNav.
 class BlockTransitions {
  public:
   explicit BlockTransitions(const StateLayout& layout);
-  /// Takes the interval on. @param dt s, >= 0
+  /// Sets the interval. @param dt s, >= 0
   const BlockTransitions& over(double dt);
 
   /// M <- D M
   void apply(Eigen::Ref<Eigen::MatrixXd> M) const;
   /// M <- D' M
   void apply_transposed(Eigen::Ref<Eigen::MatrixXd> M) const;
-  /// row <- row D, for a row over some first states
+  /// row <- row D, for a row over the first states
   void apply_to_row(Eigen::Ref<Eigen::RowVectorXd> row) const;
   /// P <- D P D' + Q_d
   void propagate(Eigen::Ref<Eigen::MatrixXd> P) const;

@@ -9,17 +9,17 @@
 
 namespace coast::estimate {
 
-/// Rows of the navigation states of a transition: 9 x (9 + sensor states); the other states move by their blocks.
+/// Rows of the navigation states of a transition: 9 x (9 + sensor states); the other states have their own block transitions.
 using NavRows = Eigen::Matrix<double, kNav, Eigen::Dynamic, Eigen::RowMajor>;
 using NavCov = Eigen::Matrix<double, kNav, kNav, Eigen::RowMajor>;
 
-/// Covariance that white noise brings into the navigation states over an interval, each sensor's own.
+/// Covariance that white noise adds to the navigation states over an interval, per sensor type.
 struct WhiteNoise {
   NavCov gyro;
   NavCov accel;
 };
 
-/// What one IMU sample contributes; the strapdown has it at hand.
+/// Contribution of one IMU sample, available from the strapdown.
 struct SampleDynamics {
   double dt = 0.0;
   Eigen::Matrix3d C_b_e;     ///< at the middle of the interval (mean of both ends)
@@ -28,9 +28,9 @@ struct SampleDynamics {
   Eigen::Vector3d dv_b;      ///< specific-force increment in b, m/s
 };
 
-/// The sums of some samples that move the navigation errors as one step.
+/// Sums over some samples that are propagated as one step of the navigation errors.
 struct Fold {
-  double h = 0.0;                                      ///< its length, s
+  double h = 0.0;                                      ///< length, s
   Eigen::Vector3d sum_f = Eigen::Vector3d::Zero();     ///< integral of C f
   Eigen::Vector3d double_f = Eigen::Vector3d::Zero();  ///< its double integral
 
@@ -42,8 +42,8 @@ struct Fold {
   /// rows <- transition of the navigation errors over the fold times rows (9 x any). @param G  dg/dr, 1/s^2
   template <typename Rows>
   void advance(Rows& rows, const Eigen::Matrix3d& G, double earth_rate) const;
-  /// What errors of sensor errors do by the end of the fold. Gyro: attitude takes the effect, velocity half the cross product
-  /// with it, position a sixth; accelerometer: velocity, position half.
+  /// Effect of errors of the estimated sensor errors at the end of the fold. Gyro: full effect on attitude, half of the cross
+  /// product with it on velocity, a sixth on position; accelerometer: full effect on velocity, half on position.
   /// @param effect  integral of C times the error over the fold, 3 x any  @param rows  9 x as many
   template <typename Rows, typename Effect>
   void add_gyro_errors(Rows&& rows, const Effect& effect) const;
@@ -58,19 +58,19 @@ struct Fold {
 ///     psi' = -[omega_ie x] psi - C de_g
 ///
 /// (de_g, de_a: errors of the estimated sensor errors). Per sample only the sums of C dt, C f dt and their double integral are
-/// kept; every `kSubstep` they are folded into the transition, with products to second order. What is left out, relative to the
-/// entry over a second: 1e-5 of the navigation states; of the sensor columns 1e-4 where force or attitude change at 1.5 Hz,
-/// beta kSubstep / 2 for states that the navigator holds over a fold, and the sensor errors themselves (1e-3 for 1000 ppm).
+/// kept; every `kSubstep` they are folded into the transition, with products to second order. Neglected terms, relative to the
+/// entry over a second: 1e-5 for navigation states; for sensor columns 1e-4 if force or attitude change at 1.5 Hz, beta
+/// kSubstep / 2 for states that the navigator holds constant over a fold, and the sensor errors themselves (1e-3 for 1000 ppm).
 class TransitionAccumulator {
  public:
   static constexpr double kSubstep = 0.05;  ///< s
-  /// Whether so much pending time is to be folded; sums of intervals round, so a little less will do.
+  /// Whether the pending time is long enough to fold, with a tolerance for rounding of summed intervals.
   [[nodiscard]] static constexpr bool substep_due(double pending) { return pending >= kSubstep - 1e-6; }
 
   TransitionAccumulator(const StateLayout& layout, double earth_rate);
 
   void reset();
-  /// White noise from here on, body axes, [(rad/s)^2/Hz], [(m/s^2)^2/Hz]; the layout's before.
+  /// Sets the white noise from now on, body axes, [(rad/s)^2/Hz], [(m/s^2)^2/Hz]; until then that of the layout is used.
   void set_white_noise(const Eigen::Matrix3d& gyro_density_b, const Eigen::Matrix3d& accel_density_b) {
     gyro_density_b_ = gyro_density_b;
     accel_density_b_ = accel_density_b;
@@ -80,7 +80,7 @@ class TransitionAccumulator {
   /// Folds what is pending. @param gravity_gradient dg/dr at the position, 1/s^2
   void fold(const Eigen::Matrix3d& gravity_gradient);
 
-  /// Three navigation states are found anew at the end of the interval: nothing of it reaches them.
+  /// For three navigation states that are reset at the end of the interval: removes their dependence on the interval.
   void forget(int first_state) {
     Phi_n_.middleRows<3>(first_state).setZero();
     for (NavCov* Q : {&Q_n_, &Q_gyro_}) {
@@ -94,9 +94,9 @@ class TransitionAccumulator {
   [[nodiscard]] WhiteNoise white_noise() const { return {Q_gyro_, Q_n_ - Q_gyro_}; }
   [[nodiscard]] double elapsed() const { return elapsed_; }
 
-  /// P <- Phi P Phi' + Q over what has been folded since reset(), every block of states included. Driving noise of sensor
-  /// states reaches the navigation states within the interval by the closed form for a response that grows like a power of
-  /// time (Brown & Hwang); intervals must be short against the states' correlation times.
+  /// P <- Phi P Phi' + Q over what has been folded since reset(), every block of states included. The effect of driving noise
+  /// of sensor states on navigation states within the interval has a closed form for a response that grows like a power of time
+  /// (Brown & Hwang); intervals must be short compared with the states' correlation times.
   void propagate_covariance(Eigen::MatrixXd& P);
 
  private:
@@ -110,9 +110,9 @@ class TransitionAccumulator {
   Eigen::Matrix3d gyro_density_b_, accel_density_b_;
   NavRows Phi_n_;
   NavCov Q_n_;
-  NavCov Q_gyro_;  ///< the gyros' part of it
+  NavCov Q_gyro_;  ///< the gyros' part of Q_n_
   int gyro_states_ = 0;
-  Eigen::RowVectorXd output_;  ///< h Phi(elapsed) of every sensor state: what a unit of it at the knot does now
+  Eigen::RowVectorXd output_;  ///< h Phi(elapsed) of every sensor state: current output per unit of the state at the knot
   Eigen::RowVectorXd middle_;  ///< the same in the middle of the fold
   Eigen::Matrix<double, 3, Eigen::Dynamic, Eigen::RowMajor> effect_;  ///< of every sensor state on its integral, over the fold
   BlockTransitions over_half_fold_;
@@ -121,7 +121,7 @@ class TransitionAccumulator {
   bool multiplicative_ = false;  ///< whether any sensor state multiplies a signal
 
   Fold fold_;                                    ///< pending
-  Eigen::Matrix3d sum_C_;                        ///< integral of C over it
+  Eigen::Matrix3d sum_C_;                        ///< integral of C over the fold
   std::array<Eigen::Matrix3d, 3> sum_C_dtheta_;  ///< sums of C dtheta_k, k = x, y, z of b
   std::array<Eigen::Matrix3d, 3> sum_C_dv_;
 };
@@ -136,7 +136,8 @@ void Fold::advance(Rows& rows, const Eigen::Matrix3d& G, double earth_rate) cons
   const auto gravity_kick = [&](double dt) {
     for (int i = 0; i < 3; ++i) v.row(i) += (dt * G(i, 0)) * r.row(0) + (dt * G(i, 1)) * r.row(1) + (dt * G(i, 2)) * r.row(2);
   };
-  // Earth rotation; taking the new first component for the second costs (angle)^2, 1e-11 a fold, and needs no temporary.
+  // Earth rotation; using the new first component for the second gives an error of (angle)^2, 1e-11 per fold, and needs no
+  // temporary.
   const auto turn = [](auto block, double angle) {
     block.row(0) += angle * block.row(1);
     block.row(1) -= angle * block.row(0);

@@ -1,6 +1,6 @@
 #pragma once
-// Measurements. Each kind is one file in src/estimate/updates: it linearises at the current state, or says that it does not
-// apply. Sign: innovation nu = z - h(estimate) = -H d + noise, with d the error estimate - truth.
+// Measurements. Each kind is one file in src/estimate/updates: it linearises at the current state, or returns nothing if it
+// does not apply. Sign: innovation nu = z - h(estimate) = -H d + noise, with d the error estimate - truth.
 
 #include <Eigen/Core>
 #include <optional>
@@ -14,12 +14,12 @@ namespace coast::estimate {
 
 enum class UpdateKind { kGnssPosition, kGnssVelocity, kZeroVelocity, kNonHolonomic, kCarrierPhase, kMemberDifference };
 [[nodiscard]] std::string_view name(UpdateKind kind);
-/// Whether it ties the position down.
+/// Whether it observes the position.
 [[nodiscard]] constexpr bool is_position(UpdateKind kind) {
   return kind == UpdateKind::kGnssPosition || kind == UpdateKind::kCarrierPhase;
 }
 
-/// No measurement has more components than this, so that what is m x m needs no heap.
+/// No measurement has more components than this, so that m x m matrices need no heap memory.
 inline constexpr int kMaxComponents = 3;
 using Components = Eigen::Matrix<double, Eigen::Dynamic, 1, Eigen::ColMajor, kMaxComponents, 1>;
 using ComponentCov = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::ColMajor, kMaxComponents, kMaxComponents>;
@@ -32,11 +32,11 @@ struct Linearised {
   ComponentCov R;     ///< m x m, positive definite
 };
 
-/// What every update may look at beside the filter's state.
+/// Input of every update besides the filter's state.
 struct UpdateContext {
   const StateLayout& layout;
-  Eigen::Vector3d lever_arm_b;  ///< configured; the estimated part is in the state
-  Eigen::Vector3d omega_eb_b;   ///< angular rate against the Earth, rad/s
+  Eigen::Vector3d lever_arm_b;  ///< as configured; the estimated correction is in the state
+  Eigen::Vector3d omega_eb_b;   ///< angular rate relative to the Earth, rad/s
   Eigen::Matrix3d C_n_e;        ///< at the position
 };
 
@@ -45,7 +45,7 @@ struct UpdateContext {
 /// GNSS velocity at the antenna.   z = v + C (omega x l)
 [[nodiscard]] std::optional<Linearised> gnss_velocity(const FilterState& state, const UpdateContext& context,
                                                       const record::GnssFix& fix);
-/// Standing still.   0 = v_eb
+/// Zero velocity at standstill.   0 = v_eb
 [[nodiscard]] Linearised zero_velocity(const FilterState& state, double sd_mps);
 
 /// A car's wheels neither slide sideways nor leave the road at `point_b`:  0 = rows y, z of C_b_v (C_e_b v + omega x p).
@@ -53,27 +53,28 @@ struct NonHolonomic {
   Eigen::Vector3d point_b = Eigen::Vector3d::Zero();  ///< m, body axes
   double sd_lateral_mps = 0.1;
   double sd_vertical_mps = 0.1;
-  double pitch = 0.0;  ///< configured vehicle against body, rad: C_v_b = Rz(yaw) Ry(pitch)
+  double pitch = 0.0;  ///< as configured, vehicle relative to body, rad: C_v_b = Rz(yaw) Ry(pitch)
   double yaw = 0.0;
 };
 [[nodiscard]] Linearised non_holonomic(const FilterState& state, const UpdateContext& context, const NonHolonomic& constraint);
-/// Body to vehicle axes. @param pitch, yaw  of the vehicle against the body, rad
+/// Body to vehicle axes. @param pitch, yaw  of the vehicle relative to the body, rad
 [[nodiscard]] Eigen::Matrix3d C_b_v_of(double pitch, double yaw);
-/// d(C_b_v u) by the vehicle's pitch and yaw against the body: columns of m/s per rad, rows y and z.
-/// @param u_b  velocity of the constraint's point, body axes, m/s
+/// Derivative of C_b_v u with respect to the vehicle's pitch and yaw relative to the body: columns in m/s per rad, rows y and
+/// z.
+/// @param u_b  velocity of the constraint point, body axes, m/s
 [[nodiscard]] Eigen::Matrix2d slip_by_mounting(double pitch, double yaw, const Eigen::Vector3d& u_b);
 
-/// How member j of a synthetic IMU differs from the members before it, each of which has its own error states:
+/// Difference of member j of a synthetic IMU from the members before it; each member has its own error states:
 ///     mean_j = weighted mean of members 0 .. j-1 over the block
 /// on three axes, gyros or accelerometers. The differences of a block are independent of each other and of the noise of the
 /// sum.
-/// @param block  its members in the order of the layout's
-/// @return  nothing where member j, or all before it, may not be used
+/// @param block  its members in the order of the layout
+/// @return  nothing if member j, or all before it, are not usable
 [[nodiscard]] std::optional<Linearised> member_difference(const FilterState& state, const StateLayout& layout,
                                                           const record::MemberBlocks::Block& block, noise::Sensor sensor,
                                                           std::size_t j);
 
-/// What an update did, and what the backward recursion needs of it.
+/// An applied update, as needed by the backward recursion.
 struct AppliedUpdate {
   UpdateKind kind = UpdateKind::kGnssPosition;
   Eigen::MatrixXd H;   ///< m x n

@@ -1,5 +1,5 @@
 #pragma once
-// WGS 84: positions, local frames, gravity. Over GeographicLib; no geoid or gravity grids.
+// WGS 84: positions, local frames, gravity. Uses GeographicLib; no geoid or gravity grids.
 
 #include <Eigen/Core>
 
@@ -17,7 +17,7 @@ struct Geodetic {
 /// Position in ECEF [m]. Round trip with `geodetic_from_ecef` below 1e-8 m to 1000 km height, poles included.
 [[nodiscard]] Eigen::Vector3d ecef_from_geodetic(const Geodetic& p);
 [[nodiscard]] Geodetic geodetic_from_ecef(const Eigen::Vector3d& r_e);
-/// C_n_e: north-east-down at p to ECEF. At a pole north is the direction of the longitude given.
+/// C_n_e: north-east-down at p to ECEF. At a pole, north is defined by the given longitude.
 [[nodiscard]] Eigen::Matrix3d C_n_e(const Geodetic& p);
 
 /// Radii of curvature [m]: meridian M and prime vertical N.
@@ -27,11 +27,11 @@ struct Radii {
 };
 [[nodiscard]] Radii radii_of_curvature(double latitude);
 
-/// Normal gravity of WGS 84 (plumb line: with centrifugal part), resolved in e [m/s^2], any height.
+/// Normal gravity of WGS 84 (including centrifugal acceleration), resolved in e [m/s^2], any height.
 [[nodiscard]] Eigen::Vector3d gravity_e(const Eigen::Vector3d& r_e);
 
-/// Normal gravity near a point: value and gradient are taken from `gravity_e` and renewed when the point has moved
-/// more than 50 m, so that the strapdown pays a 3x3 product per sample. Agrees with `gravity_e` to 1e-8 m/s^2.
+/// Normal gravity near a point: value and gradient come from `gravity_e` and are recomputed when the point has moved more than
+/// 50 m, so that the strapdown needs only a 3x3 product per sample. Agrees with `gravity_e` to 1e-8 m/s^2.
 class LocalGravity {
  public:
   [[nodiscard]] const Eigen::Vector3d& at(const Eigen::Vector3d& r_e);

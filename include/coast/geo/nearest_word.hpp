@@ -1,5 +1,5 @@
 #pragma once
-// Spelling help for messages. Here because the lowest room that needs it is this one (unit names).
+// Spelling help for messages. It is in geo because geo (unit names) is the lowest library that needs it.
 
 #include <string>
 #include <string_view>
@@ -11,8 +11,7 @@ namespace coast::geo {
 /// Damerau 1964).
 [[nodiscard]] std::size_t edit_distance(std::string_view a, std::string_view b);
 
-/// The nearest of `known` to `word`, the first where several are; empty where none is within half the word's length
-/// (at least 1).
+/// The word of `known` nearest to `word`, the first of several; empty if none is within half the word's length (at least 1).
 [[nodiscard]] std::string nearest_word(std::string_view word, const std::vector<std::string>& known);
 
 }  // namespace coast::geo

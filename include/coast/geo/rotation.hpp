@@ -1,12 +1,12 @@
 #pragma once
-// Rotations. C_a_b takes a to b: v_b = C_a_b * v_a. Quaternions are Hamilton, q_a_b the same rotation as C_a_b.
+// Rotations. C_a_b takes a to b: v_b = C_a_b * v_a. Quaternions are Hamilton; q_a_b is the same rotation as C_a_b.
 
 #include <Eigen/Core>
 #include <Eigen/Geometry>
 
 namespace coast::geo {
 
-/// Euler angles z-y-x of C_b_n, rad: C_b_n = Rz(yaw) Ry(pitch) Rx(roll). Only for people and files.
+/// Euler angles z-y-x of C_b_n, rad: C_b_n = Rz(yaw) Ry(pitch) Rx(roll). Used only in files and for display.
 struct Euler {
   double roll = 0.0;   ///< (-pi, pi]
   double pitch = 0.0;  ///< [-pi/2, pi/2]
@@ -28,19 +28,19 @@ struct Euler {
 [[nodiscard]] Eigen::Matrix3d rotation_matrix(const Eigen::Vector3d& v);
 /// Right Jacobian of the exponential: exp(v + dv) = exp(v) exp(Jr(v) dv) to first order.
 [[nodiscard]] Eigen::Matrix3d right_jacobian(const Eigen::Vector3d& v);
-/// Its inverse (Bortz' equation: d(phi)/dt = Jr^-1(phi) omega with body rates).
+/// Inverse of the right Jacobian (Bortz' equation: d(phi)/dt = Jr^-1(phi) omega with body rates).
 [[nodiscard]] Eigen::Matrix3d inverse_right_jacobian(const Eigen::Vector3d& v);
 
 [[nodiscard]] Eigen::Matrix3d dcm_from_euler(const Euler& e);
 [[nodiscard]] Eigen::Quaterniond quaternion_from_euler(const Euler& e);
-/// At pitch = +-90 deg roll and yaw are not separable: roll is set to 0 and yaw carries the sum.
+/// At pitch = +-90 deg roll and yaw are not separable: roll is set to 0 and yaw is the sum.
 [[nodiscard]] Euler euler_from_dcm(const Eigen::Matrix3d& C_b_n);
 [[nodiscard]] Euler euler_from_quaternion(const Eigen::Quaterniond& q_b_n);
 /// d(roll, pitch, yaw)/d(psi_n) for C(est) = (I + [psi_n x]) C(truth), rad/rad. Singular at pitch +-90 deg: rows capped there.
 [[nodiscard]] Eigen::Matrix3d euler_jacobian(const Euler& e);
 /// Closest rotation to a nearly orthonormal matrix (polar decomposition).
 [[nodiscard]] Eigen::Matrix3d orthonormalised(const Eigen::Matrix3d& m);
-/// Angle into (-pi, pi].
+/// Wraps an angle into (-pi, pi].
 [[nodiscard]] double wrap_angle(double radians);
 
 }  // namespace coast::geo

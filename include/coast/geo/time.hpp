@@ -1,5 +1,5 @@
 #pragma once
-// GPS time as a type of its own. A bare double of seconds is always an interval.
+// GPS time has its own type. A plain double in seconds is always an interval.
 
 #include <compare>
 #include <cstdint>
@@ -7,7 +7,7 @@
 
 namespace coast::geo {
 
-/// Calendar date and time of day in some stated time scale.
+/// Calendar date and time of day; the function that uses it states the time scale.
 struct Calendar {
   int year = 1980;
   int month = 1;  ///< 1 to 12
@@ -52,7 +52,7 @@ class GpsTime {
 
 /// GPS minus UTC in whole seconds at an instant of GPS time (table of IERS Bulletin C; 18 s since 2017).
 [[nodiscard]] int leap_seconds(GpsTime t);
-/// The instant up to which the table is known to hold; beyond it callers warn.
+/// The instant up to which the table is valid; callers warn after it.
 [[nodiscard]] GpsTime leap_seconds_expiry();
 /// "2025-07-08 19:34:18.499 GPST"
 [[nodiscard]] std::string to_string(GpsTime t);

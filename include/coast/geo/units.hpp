@@ -1,5 +1,5 @@
 #pragma once
-// The only place with a 3600 or a pi/180. Inside everything is SI and radians.
+// Unit conversions; the only place with a 3600 or a pi/180. All other code uses SI units and radians.
 
 #include <numbers>
 #include <string_view>
@@ -51,7 +51,7 @@ struct Unit {
 /// @throws std::invalid_argument unknown name, or a unit of another dimension (the message lists those that fit)
 [[nodiscard]] double to_si(double value, std::string_view name, Dimension dimension);
 
-/// Continuous-time power spectral density, [unit]^2/Hz. A type of its own, so that it is never taken for a covariance.
+/// Continuous-time power spectral density, [unit]^2/Hz. It has its own type, so that it cannot be used as a covariance.
 struct Psd {
   double value = 0.0;
 };
@@ -63,7 +63,7 @@ struct Cov {
 [[nodiscard]] constexpr Cov integrate(Psd q, double dt) {
   return {q.value * dt};
 }
-/// Density of white noise whose mean over one sample at `rate_hz` has this variance: R / rate.
+/// Density of white noise whose mean over one sample interval at `rate_hz` has this variance: R / rate.
 [[nodiscard]] constexpr Psd density_of_samples(Cov per_sample, double rate_hz) {
   return {per_sample.value / rate_hz};
 }

@@ -1,9 +1,9 @@
 #pragma once
-// What is not known of the motion while IMU samples are missing.
+// Uncertainty of the motion while IMU samples are missing.
 
 namespace coast::ins {
 
-/// rad/s: what turns a body meanwhile. A vehicle in a bend, a drone in a turn; a body that is thrown about turns faster.
+/// rad/s: sd of the unknown turn rate. Fits a vehicle in a bend or a drone in a turn; a tumbling body turns faster.
 inline constexpr double kGapRateSd = 0.3;
 
 }  // namespace coast::ins

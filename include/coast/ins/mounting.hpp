@@ -1,5 +1,5 @@
 #pragma once
-// How the IMU sits in the body: which sensor axis points forward, right and down, and the small rotation that is left.
+// Mounting of the IMU in the body: which sensor axis points forward, right and down, and the remaining small rotation.
 
 #include <Eigen/Core>
 
@@ -10,7 +10,7 @@ namespace coast::ins {
 
 /// Keys `axes` and `mounting_deg` of a run's `imu:` map.
 struct MountingOptions {
-  /// Body forward, right, down in terms of sensor axes, as rows: `axes: [-x, y, -z]` is diag(-1, 1, -1). A proper rotation.
+  /// Rows: body forward, right, down in sensor axes; `axes: [-x, y, -z]` is diag(-1, 1, -1). A proper rotation.
   Eigen::Matrix3d axes = Eigen::Matrix3d::Identity();
   /// roll, pitch, yaw [rad] of the rotation that takes body to sensor once `axes` is applied.
   Eigen::Vector3d mounting = Eigen::Vector3d::Zero();
@@ -26,7 +26,8 @@ struct MountingOptions {
 ///     C_s_b = (Rz(yaw) Ry(pitch) Rx(roll))^T axes
 [[nodiscard]] Eigen::Matrix3d C_s_b(const MountingOptions& options);
 
-/// Rotates every increment in place: sensor axes to body axes. The rotation commutes with compensation (phi, u rotate alike).
+/// Rotates every increment in place: sensor axes to body axes. The rotation commutes with compensation (phi and u rotate in the
+/// same way).
 void to_body(record::ImuRecording& recording, const Eigen::Matrix3d& C_s_b);
 
 }  // namespace coast::ins

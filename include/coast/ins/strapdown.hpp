@@ -10,10 +10,10 @@
 
 namespace coast::ins {
 
-/// What one IMU interval does to the body, free of the Earth: exact for whatever motion produced it.
+/// Rotation and velocity increment of one IMU interval, without Earth rate and gravity: exact for any motion.
 struct BodyIncrement {
   double dt = 0.0;      ///< s
-  Eigen::Vector3d phi;  ///< rotation vector from b at the start to b at the end against i, rad
+  Eigen::Vector3d phi;  ///< rotation vector with respect to i, from b at the start to b at the end, rad
   Eigen::Vector3d u;    ///< integral of f_ib resolved in b at the *start* of the interval, m/s
 };
 
@@ -24,30 +24,30 @@ struct RawIncrement {
   Eigen::Vector3d dv = Eigen::Vector3d::Zero();
 };
 
-/// Coning and sculling from this and the previous interval; intervals may differ in length. Exact for constant rate and
-/// force at any speed of turn; for rate and force linear in time to the second order of small angles. With no previous
-/// interval (dt = 0) the motion is taken as constant over the interval.
+/// Coning and sculling from this and the previous interval; intervals may differ in length. Exact for constant rate and force
+/// at any turn rate; for rate and force linear in time, to second order in small angles. Without a previous interval (dt = 0)
+/// the motion is assumed constant over the interval.
 ///
 ///     phi = th + c [th' x th],   u = J(th) dv + c ([th' x dv] + [dv' x th]),   c = T^2 / (6 T' (T + T')),
 ///     J(th) = integral of exp([th s x]) over s in [0, 1] = I + [th x]/2 + [th x]^2/6 + ...
 ///
-/// Savage (1998) eqs. (33), (52), there for T = T' (c = 1/12) and with J to its second term.
+/// Savage (1998) eqs. (33), (52), given there for T = T' (c = 1/12) and with the first two terms of J.
 [[nodiscard]] BodyIncrement compensate_two_sample(const RawIncrement& previous, const RawIncrement& current);
 
-/// Splits an interval at `fraction` in (0, 1) of its length, rate and force taken linear through this and the previous
-/// interval: the two parts add up to the whole.
+/// An interval split at `fraction` in (0, 1) of its length, with rate and force linear over this and the previous interval. The
+/// two parts add up to the whole.
 struct SplitIncrement {
   RawIncrement first;
   RawIncrement second;
 };
 [[nodiscard]] SplitIncrement split(const RawIncrement& previous, const RawIncrement& current, double fraction);
 
-/// Navigation equations in e: attitude by the exact rotations of body and Earth, velocity with gravity and Coriolis at
-/// the middle of the interval, position by the trapezoid.
+/// Navigation equations in e: attitude by the exact rotations of body and Earth, velocity with gravity and Coriolis at the
+/// middle of the interval, position by the trapezoidal rule.
 ///
-/// Position by the trapezoid is exact to T^2/12 times the change of acceleration since the start, however long ago (Euler and
-/// Maclaurin): 0.02 mm for 2 m/s^2 at 100 Hz. Running time backwards: pass -kEarthRate and what reversal.hpp makes.
-/// No allocation; a step is some 0.1 us.
+/// The position error of the trapezoidal rule is T^2/12 times the change of acceleration since the start, however long ago
+/// (Euler and Maclaurin): 0.02 mm for 2 m/s^2 at 100 Hz. To run backwards in time, pass -kEarthRate and the output of
+/// reversal.hpp. No allocation; a step takes some 0.1 us.
 class Strapdown {
  public:
   explicit Strapdown(const record::NavState& start, double earth_rate = geo::kEarthRate);
@@ -55,9 +55,9 @@ class Strapdown {
   void step(const BodyIncrement& increment);
 
   [[nodiscard]] const record::NavState& state() const { return state_; }
-  /// Sets position, velocity and attitude (the filter's closed loop); the time stays.
+  /// Sets position, velocity and attitude (closed-loop correction by the filter); the time is unchanged.
   void correct(const Eigen::Vector3d& r_eb_e, const Eigen::Vector3d& v_eb_e, const Eigen::Quaterniond& q_b_e);
-  /// Sets the time exactly (sums of intervals round).
+  /// Sets the time exactly (sums of intervals have rounding errors).
   void set_time(geo::GpsTime t) { state_.t = t; }
   [[nodiscard]] const Eigen::Matrix3d& gravity_gradient() const { return gravity_.gradient(); }
   /// Attitude at the end of the last step.

@@ -15,7 +15,7 @@
 
 namespace coast::io {
 
-/// What the three position columns of a table are.
+/// Meaning of the three position columns of a table.
 struct PositionOptions {
   enum class Frame { kGeodetic, kEcef, kUtm, kNed, kEnu };
   Frame frame = Frame::kGeodetic;  ///< kGeodetic: latitude, longitude [deg], height [m]; kUtm: easting, northing, height
@@ -29,15 +29,19 @@ struct PositionOptions {
   [[nodiscard]] static PositionOptions from(const config::Node& map);
 };
 
-/// The keys of `gnss:` that say what the file means.
+/// The keys of `gnss:` that describe the file.
 ///
 ///     gnss:
 ///       file: gnss.pos
 ///       format: auto                       # or rtklib-pos | kf-gins | csv (any delimiter)
-///       columns: {time: t, position: [lat, lon, h], sd: [5, 6, 7], velocity: [vn, ve, vd], velocity_sd: [..], quality: Q,
-///       satellites: ns} frame: geodetic                    # or ecef | utm | ned | enu utm_zone: 18N origin_deg_m:
-///       [32.8, 35.0, 200.0]  # of ned and enu sd_m: [0.02, 0.02, 0.04]           # N, E, D where the file states none, or none
-///       that can be used velocity_sd_mps: [0.05, 0.05, 0.1] height: ellipsoidal                # or msl, with geoid_height_m
+///       columns: {time: t, position: [lat, lon, h], sd: [5, 6, 7], velocity: [vn, ve, vd], velocity_sd: [..],
+///                 quality: Q, satellites: ns}
+///       frame: geodetic                    # or ecef | utm | ned | enu
+///       utm_zone: 18N
+///       origin_deg_m: [32.8, 35.0, 200.0]  # of ned and enu
+///       sd_m: [0.02, 0.02, 0.04]           # N, E, D, if the file has none, or none that can be used
+///       velocity_sd_mps: [0.05, 0.05, 0.1]
+///       height: ellipsoidal                # or msl, with geoid_height_m
 ///       gps_week: 2374
 ///       time: {kind: unix}
 ///
@@ -54,18 +58,18 @@ struct GnssFileOptions {
   Column quality_column;                    ///< RTKLIB's numbers
   Column satellites_column;
   PositionOptions position;
-  std::optional<Eigen::Vector3d> sd;           ///< N, E, D, m; replaces what the file states
+  std::optional<Eigen::Vector3d> sd;           ///< N, E, D, m; replaces the standard deviations in the file
   std::optional<Eigen::Vector3d> velocity_sd;  ///< N, E, D, m/s
   TimeOptions time;
 
   [[nodiscard]] static GnssFileOptions from(const config::Node& gnss);
 };
 
-/// Reads GNSS fixes. A standard deviation that is zero, negative or absent is refused with its line: a fix without uncertainty
-/// has no weight. Correlations beyond 1 by the rounding of the file are pulled back, with an event; larger ones are refused.
-/// Heights above mean sea level without `geoid_height_m` are kept as they are, with a warning.
-/// @param near an instant of the mission: gives the week where the file and the options state none
-/// @throws InputError  whatever cannot be read as stated; with file and line
+/// Reads GNSS fixes. A standard deviation that is zero, negative or absent is an error that names the line: a fix without
+/// uncertainty has no weight. Correlations beyond 1 by rounding in the file are reduced, with an event; larger ones are an
+/// error. Heights above mean sea level without `geoid_height_m` are not converted; a warning is given.
+/// @param near an instant of the mission: gives the week if neither the file nor the options state one
+/// @throws InputError  anything that cannot be read as stated; with file and line
 [[nodiscard]] record::GnssRecording read_gnss(const GnssFileOptions& options, std::optional<geo::GpsTime> near = std::nullopt);
 
 }  // namespace coast::io

@@ -21,12 +21,12 @@ enum class TimeTag { kEnd, kCentre, kStart };
 struct BinaryLayout {
   enum class Type { kI16, kI32, kF32, kF64 };
   Type type = Type::kI16;
-  int row = 0;            ///< numbers per record; 0: as many as the highest column asked for
-  long header_bytes = 0;  ///< left out at the start
+  int row = 0;            ///< numbers per record; 0: the highest column in use
+  long header_bytes = 0;  ///< skipped at the start
   bool big_endian = false;
 };
 
-/// The keys of `imu:` that say what the file means.
+/// The keys of `imu:` that describe the file.
 ///
 ///     imu:
 ///       file: imu.csv.gz
@@ -47,7 +47,7 @@ struct ImuFileOptions {
   std::vector<Column> time_columns;  ///< empty: the default name
   std::vector<Column> gyro_columns;  ///< three, or empty: the default names
   std::vector<Column> accel_columns;
-  Column temperature_column;  ///< empty: none, or the default name where the header has it
+  Column temperature_column;  ///< empty: none, or the default name if the header has it
   double gyro_to_si = 1.0;    ///< to rad/s (rates) or rad (increments), scale included
   double accel_to_si = 1.0;   ///< to m/s^2 or m/s
   bool increments = false;
@@ -58,12 +58,11 @@ struct ImuFileOptions {
   [[nodiscard]] static ImuFileOptions from(const config::Node& imu);
 };
 
-/// Reads an IMU file into increments. Intervals tile time: each begins where the one before ends. Rates are taken as means over
-/// the interval that ends at the tag; over missing samples (a step of more than 1.5 median intervals) the rate is taken linear
-/// between its neighbours, with an `imu_gap` event. Rows with NaN are left out (then a gap), so are leading rows of exact
-/// zeros.
-/// @param near an instant of the mission: gives the week where the file and the options state none
-/// @throws InputError  whatever cannot be read as stated; with file and line
+/// Reads an IMU file into increments. Intervals are contiguous: each begins where the previous one ends. Rates are means over
+/// the interval that ends at the tag; over missing samples (a step of more than 1.5 median intervals) the rate is interpolated
+/// linearly, with an `imu_gap` event. Rows with NaN are left out (which makes a gap), as are leading rows of exact zeros.
+/// @param near an instant of the mission: gives the week if neither the file nor the options state one
+/// @throws InputError  anything that cannot be read as stated; with file and line
 [[nodiscard]] record::ImuRecording read_imu(const ImuFileOptions& options, std::optional<geo::GpsTime> near = std::nullopt);
 
 }  // namespace coast::io

@@ -1,5 +1,5 @@
 #pragma once
-// Lines that survive an interruption of long work.
+// Results of long work, saved line by line, so that they survive an interruption.
 
 #include <cstdio>
 #include <filesystem>
@@ -10,15 +10,15 @@
 
 namespace coast::io {
 
-/// A text file that grows by whole lines, each on the disk before the next begins. The first line says what the others are
-/// results of; a file that begins otherwise is of other work, and is begun anew.
+/// A text file that grows by whole lines, each on the disk before the next begins. The first line identifies the work; a file
+/// with another first line is from other work and is overwritten.
 class Journal {
  public:
-  /// @param of  one line
+  /// @param of  one line that identifies the work
   /// @throws OutputError  the file cannot be written
   Journal(const std::filesystem::path& path, std::string_view of);
 
-  /// What earlier work left, without the first line and without a last one that has no end.
+  /// Lines from an earlier run, without the first line and without an incomplete last line.
   [[nodiscard]] const std::vector<std::string>& lines() const { return lines_; }
   /// @throws OutputError
   void append(std::string_view line);

@@ -1,5 +1,5 @@
 #pragma once
-// A file of what the members of a synthetic IMU measured each by itself, as `coast synth` writes it.
+// File with the measurements of each member of a synthetic IMU, as written by `coast synth`.
 
 #include <filesystem>
 #include <string>
@@ -13,9 +13,10 @@ namespace coast::io {
 ///
 ///     gps_week,from_sow_s,span_s,member,gyro_x_radps,gyro_y_radps,gyro_z_radps,accel_x_mps2,accel_y_mps2,accel_z_mps2
 ///
-/// Rows of one time are one block; a member without a row may not be used in it.
-/// @param names  the members in the order wanted
-/// @throws InputError  no block, another member, one twice in a block, blocks that overlap or are out of order, with line
+/// Rows with the same time form one block; a member without a row is not used in it.
+/// @param names  the members in the order of the result
+/// @throws InputError  no block, an unknown member, a member twice in a block, blocks that overlap or are out of order; with
+///                     line
 [[nodiscard]] record::MemberBlocks read_member_blocks(const std::filesystem::path& file, const std::vector<std::string>& names);
 void write_member_blocks(const std::filesystem::path& file, const record::MemberBlocks& members);
 

@@ -1,5 +1,5 @@
 #pragma once
-// A file of how noisy an IMU was over time, as `coast synth` writes it.
+// File with the noise density of an IMU over time, as written by `coast synth`.
 
 #include <filesystem>
 #include <vector>
@@ -12,8 +12,8 @@ namespace coast::io {
 ///
 ///     gps_week,sow_s,gyro_x_radps_rthz,gyro_y_..,gyro_z_..,accel_x_mps2_rthz,accel_y_..,accel_z_..
 ///
-/// A row holds from its time to the next one's; the last as long as the one before.
-/// @return  densities relative to their means over the file's time, axis by axis: the error model says how large the mean is
+/// A row is valid from its time to that of the next row; the last one for as long as the one before it.
+/// @return  densities relative to their means over the time of the file, per axis; the mean itself is given by the error model
 /// @throws InputError  fewer than two rows, times that do not increase, densities that are not above zero; with line
 [[nodiscard]] std::vector<record::NoiseLevel> read_noise_levels(const std::filesystem::path& file);
 

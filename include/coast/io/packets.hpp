@@ -1,5 +1,5 @@
 #pragma once
-// IMUs whose samples have no time of their own: a counter, and the time at which a computer received them.
+// IMUs whose samples have no time tag, only a counter and the time at which a computer received them.
 
 #include <filesystem>
 #include <vector>
@@ -16,8 +16,8 @@ namespace coast::io {
 ///     columns: {counter: counter, arrival: arrival_s, gyro: [gx, gy, gz], accel: [ax, ay, az], gps: gps_s, pulse: pulse}
 ///     units: {gyro: deg/s, accel: m/s^2}
 ///
-/// `gps` (seconds of week, of the device that has them) and `pulse` (number of the sync pulse) may be missing, and empty or nan
-/// in rows that have none.
+/// `gps` (seconds of week, of the device that has them) and `pulse` (number of the sync pulse) are optional, and may be empty
+/// or nan in a row.
 struct PacketFileOptions {
   std::filesystem::path file;
   Column counter, arrival;
@@ -30,7 +30,7 @@ struct PacketFileOptions {
 };
 
 /// Reads packets in the order of the file. Rows whose rates or specific forces are not finite are left out with an event.
-/// @throws InputError  whatever cannot be read as stated, counters that are no whole numbers, fewer than two rows
+/// @throws InputError  anything that cannot be read as stated, counters that are not whole numbers, fewer than two rows
 [[nodiscard]] record::PacketRecording read_packets(const PacketFileOptions& options);
 
 }  // namespace coast::io

@@ -14,15 +14,15 @@
 
 namespace coast::io {
 
-/// What the attitude columns of a table are: z-y-x Euler angles in degrees, or a Hamilton quaternion.
+/// Meaning of the attitude columns of a table: z-y-x Euler angles in degrees, or a Hamilton quaternion.
 struct AttitudeOptions {
   enum class Form { kNone, kEuler, kQuaternion };
   Form form = Form::kNone;
-  bool to_enu = false;    ///< the attitude takes the body to east-north-up, else to north-east-down
+  bool to_enu = false;    ///< the attitude transforms body to east-north-up, else to north-east-down
   bool body_flu = false;  ///< the body axes are forward-left-up, else forward-right-down
 };
 
-/// The keys of `reference:` that say what the file means.
+/// The keys of `reference:` that describe the file.
 ///
 ///     reference:
 ///       file: truth.nav
@@ -45,12 +45,12 @@ struct ReferenceFileOptions {
   TimeOptions time;
 
   [[nodiscard]] static ReferenceFileOptions from(const config::Node& reference);
-  /// A file by its name alone (the command line of `coast compare`); everything else by default.
+  /// A file given by name only (the command line of `coast compare`), with default options.
   [[nodiscard]] static ReferenceFileOptions of_file(const std::filesystem::path& file);
 };
 
-/// Reads a trajectory.  @param near an instant of the mission: gives the week where the file (week 0) and options state none
-/// @throws InputError  whatever cannot be read as stated; with file and line
+/// Reads a trajectory.  @param near an instant of the mission: gives the week if neither file (week 0) nor options state one
+/// @throws InputError  anything that cannot be read as stated; with file and line
 [[nodiscard]] record::Trajectory read_reference(const ReferenceFileOptions& options,
                                                 std::optional<geo::GpsTime> near = std::nullopt);
 

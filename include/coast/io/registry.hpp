@@ -1,5 +1,5 @@
 #pragma once
-// The formats, in an explicit table: a new one is a file under src/io/formats and a line in registry.cpp.
+// The file formats, in an explicit table. To add one, write a file under src/io/formats and a line in registry.cpp.
 
 #include <functional>
 #include <optional>
@@ -14,24 +14,24 @@
 
 namespace coast::io {
 
-/// The begin of a file, decompressed, for recognising it.
+/// The start of a file, decompressed, for recognising the format.
 struct FileHead {
   std::string path;  ///< without ".gz"
   std::string text;  ///< at most 4096 bytes
 };
 
-/// One file format. What it can carry shows in which readers are set.
+/// One file format. The readers that are set show what it can contain.
 struct Format {
   using Near = std::optional<geo::GpsTime>;
   std::string_view name;                       ///< as in `format:`
   std::string_view description;                ///< one line for the help page
-  std::function<bool(const FileHead&)> sniff;  ///< by content; empty: only by name
+  std::function<bool(const FileHead&)> sniff;  ///< recognises the content; empty: chosen by name only
   std::function<record::ImuRecording(const ImuFileOptions&, Near)> read_imu;
   std::function<record::GnssRecording(const GnssFileOptions&, Near)> read_gnss;
   std::function<record::Trajectory(const ReferenceFileOptions&, Near)> read_reference;
 };
 
-/// All formats, the most particular first: the first that recognises a file reads it.
+/// All formats, the most specific first: the first that recognises a file reads it.
 [[nodiscard]] const std::vector<Format>& formats();
 
 }  // namespace coast::io

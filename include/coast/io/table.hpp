@@ -1,6 +1,6 @@
 #pragma once
-// Tables of numbers as text: comma, semicolon, tab or white space between columns, with or without a header line. One engine
-// under every text format; only the columns asked for are converted.
+// Tables of numbers as text: comma, semicolon, tab or white space between columns, with or without a header line. Used by all
+// text formats; only the requested columns are converted.
 
 #include <filesystem>
 #include <string>
@@ -24,7 +24,7 @@ struct Column {
 
   /// A scalar: digits alone are a number, anything else a name.
   [[nodiscard]] static Column from(const config::Node& node);
-  /// A list of names or numbers, or one alone.  @param count 0: any length  @throws InputError another length than `count`
+  /// A list of names or numbers, or a single one.  @param count 0: any length  @throws InputError another length than `count`
   [[nodiscard]] static std::vector<Column> list_from(const config::Node& node, std::size_t count);
   [[nodiscard]] bool empty() const { return number == 0 && name.empty(); }
   [[nodiscard]] std::string text() const { return number > 0 ? std::to_string(number) : name; }
@@ -32,13 +32,13 @@ struct Column {
 
 /// Reads a table row by row.
 ///
-/// Lines that start with '#' or '%' are comments, blank lines are passed over. The first other line is a header if none of its
-/// fields is a number. Fields may be quoted ("..."). `nan`, `inf` and empty fields give NaN: the caller decides. Every row must
-/// have as many columns as the first one. A last line that was cut off, and up to three lines of other text at the very end,
-/// are left out with an event.
+/// Lines that start with '#' or '%' are comments, blank lines are skipped. The first other line is a header if none of its
+/// fields is a number. Fields may be quoted ("..."). `nan`, `inf` and empty fields give NaN, to be handled by the caller. Every
+/// row must have as many columns as the first one. A last line that was cut off, and up to three lines of other text at the end
+/// of the file, are left out with an event.
 class TableReader {
  public:
-  /// Opens the file and reads up to the first row.  @throws InputError no rows, or what ByteSource refuses
+  /// Opens the file and reads up to the first row.  @throws InputError no rows, or an error of ByteSource
   explicit TableReader(const std::filesystem::path& path);
 
   [[nodiscard]] const std::vector<std::string>& header() const { return header_; }      ///< empty where there is none
@@ -48,8 +48,8 @@ class TableReader {
   [[nodiscard]] std::size_t columns() const { return columns_; }
   [[nodiscard]] char delimiter() const { return delimiter_; }  ///< ' ' for white space
 
-  /// Asks for a column as a number or as text; returns its slot. All calls come before the first `next`.
-  /// @throws InputError  no such column; names those that exist, the nearest first
+  /// Requests a column as number or text; returns its slot. All calls must come before the first `next`.
+  /// @throws InputError  no such column (lists the existing ones, the nearest first)
   [[nodiscard]] std::size_t number_slot(const Column& column, std::string_view role);
   [[nodiscard]] std::size_t text_slot(const Column& column, std::string_view role);
 
@@ -57,13 +57,13 @@ class TableReader {
   [[nodiscard]] bool next();
   [[nodiscard]] double number(std::size_t slot) const { return numbers_[slot]; }
   [[nodiscard]] std::string_view text(std::size_t slot) const { return texts_[slot]; }
-  /// True if every number asked for is finite in this row.
+  /// True if every requested number is finite in this row.
   [[nodiscard]] bool finite() const { return finite_; }
 
   [[nodiscard]] long line() const { return line_; }
-  [[nodiscard]] long rows() const { return rows_; }  ///< given so far
+  [[nodiscard]] long rows() const { return rows_; }  ///< returned so far
   [[nodiscard]] const std::string& name() const { return lines_.name(); }
-  /// Rows to expect in all, from the length of the file and of the first row; for reserving memory.
+  /// Expected total number of rows, from the lengths of the file and of the first row; for reserving memory.
   [[nodiscard]] std::size_t expected_rows() const;
   /// The error to throw for the current row.
   [[nodiscard]] InputError error(std::string found, std::string expected = "", std::string what_to_do = "") const;
@@ -102,8 +102,8 @@ class TableReader {
   std::vector<Step> plan_;  ///< in the order of fields
   std::vector<double> numbers_;
   std::vector<std::string_view> texts_;
-  std::vector<std::string_view> fields_;  ///< scratch of rows with quotes
-  std::size_t last_field_length_ = 0;     ///< of the row before, to recognise a number that was cut off
+  std::vector<std::string_view> fields_;  ///< work space for rows with quotes
+  std::size_t last_field_length_ = 0;     ///< of the previous row, to detect a number that was cut off
   bool finite_ = true;
   long line_ = 0;
   long rows_ = 0;

@@ -1,5 +1,5 @@
 #pragma once
-// What the time column(s) of a table mean, declared once per file.
+// Meaning of the time column(s) of a table, declared once per file.
 
 #include <functional>
 #include <optional>
@@ -14,7 +14,7 @@
 namespace coast::io {
 
 enum class TimeKind {
-  kSecondsOfWeek,   ///< `sow`: GPS seconds of week; the week is stated, or taken from the partner file
+  kSecondsOfWeek,   ///< `sow`: GPS seconds of week; the week is stated, or comes from the other file of the mission
   kWeekAndSeconds,  ///< `week_sow`: two columns
   kGpst,            ///< `gpst`: calendar in GPS time, one column ("2025-07-08 19:34:18.5", also with / and T) or two
   kUtc,             ///< `utc`: calendar in UTC, leap seconds applied
@@ -31,23 +31,23 @@ struct TimeOptions {
   double offset_s = 0.0;  ///< added after the unit
   double rate_hz = 0.0;   ///< kRow only
   std::optional<int> gps_week;
-  std::string file_key;  ///< where the file was named, for messages
+  std::string file_key;  ///< key that names the file, for messages
 
   /// @param map the node that holds `time:` and `gps_week:` (imu, gnss or reference)
   [[nodiscard]] static TimeOptions from(const config::Node& map);
-  /// True where seconds of week stand without a week.
+  /// True for seconds of week without a week.
   [[nodiscard]] bool lacks_week() const;
 };
 
-/// Seconds of week to GpsTime: the week is stated, or the nearest to `near`; a fall by about one week is a rollover, unwrapped
-/// with an event.
+/// Converts seconds of week to GpsTime: the week is stated, or the nearest to `near`; a decrease by about one week is a
+/// rollover, unwrapped with an event.
 class WeekClock {
  public:
-  /// Makes the error of the current row: found, expected, what to do.
+  /// Makes the error for the current row from found, expected, what to do.
   using MakeError = std::function<InputError(std::string, std::string, std::string)>;
   WeekClock(const TimeOptions& options, std::optional<geo::GpsTime> near, MakeError error);
 
-  /// @throws InputError  no week anywhere; not a time at all
+  /// @throws InputError  no week is given; not a time
   [[nodiscard]] geo::GpsTime at(double seconds);
   [[nodiscard]] const record::Events& events() const { return events_; }
 
@@ -61,12 +61,12 @@ class WeekClock {
   record::Events events_;
 };
 
-/// Turns the time column(s) of a row into GpsTime. A fall by about one week is a rollover: unwrapped, with an event.
+/// Converts the time column(s) of a row to GpsTime. A decrease by about one week is a rollover, unwrapped with an event.
 class TimeColumn {
  public:
   /// @param columns one or two columns, none for kRow
-  /// @param near an instant of the same mission, from the partner file: gives the week where none is stated
-  /// @throws InputError  no week anywhere; a column that does not exist; a number of columns that does not fit the kind
+  /// @param near an instant of the same mission, from the other file: gives the week if none is stated
+  /// @throws InputError  no week is given; a column does not exist; the number of columns does not fit the kind
   TimeColumn(TableReader& table, const TimeOptions& options, const std::vector<Column>& columns,
              std::optional<geo::GpsTime> near);
 
@@ -85,7 +85,7 @@ class TimeColumn {
   bool two_columns_ = false;
 };
 
-/// GPS week in which `seconds_of_week` comes nearest to `near`.
+/// GPS week for which `seconds_of_week` is nearest to `near`.
 [[nodiscard]] int nearest_week(double seconds_of_week, geo::GpsTime near);
 
 }  // namespace coast::io

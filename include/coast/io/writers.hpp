@@ -1,6 +1,6 @@
 #pragma once
-// Files that coast writes. Each is written under a temporary name beside its own and renamed when whole, so that a crash or a
-// full disk leaves no half file under a final name.
+// Files that coast writes. Each is written under a temporary name in the same folder and renamed when complete, so that a crash
+// or a full disk leaves no partial file under the final name.
 
 #include <cstdint>
 #include <filesystem>
@@ -18,12 +18,12 @@
 
 namespace coast::io {
 
-/// A file that appears whole or not at all. Where the target exists and is no regular file (a pipe, a device), it is written
-/// directly. In a folder of results (results_folder.hpp) it replaces only what coast wrote.
+/// A file that appears complete or not at all. If the target exists and is not a regular file (a pipe, a device), it is written
+/// directly. In a results folder (results_folder.hpp) only files that coast wrote are replaced.
 class AtomicFile {
  public:
   /// @throws OutputError  the folder is missing or not writable; names the path
-  /// @throws InputError   the file is there and is not coast's, or was read by this job
+  /// @throws InputError   the file exists and was not written by coast, or was read by this job
   explicit AtomicFile(const std::filesystem::path& path);
   ~AtomicFile();  ///< removes the temporary file if it was not committed
   AtomicFile(const AtomicFile&) = delete;
@@ -44,19 +44,19 @@ class AtomicFile {
   int descriptor_ = -1;
 };
 
-/// Removes what is half written and ends the process: for a signal, from a thread of its own and not from a handler.
+/// Removes partial files and ends the process: on a signal, called from a dedicated thread, not from the handler.
 [[noreturn]] void exit_without_unfinished_files(int status);
 
-/// Writes a whole text at once.
+/// Writes a text file in one call.
 void write_text(const std::filesystem::path& path, std::string_view text);
 
-/// Takes a trajectory epoch by epoch, in order of time.
+/// Writes a trajectory epoch by epoch, in time order.
 class TrajectoryWriter {
  public:
   virtual ~TrajectoryWriter() = default;
   /// @throws OutputError
   virtual void write(const record::TrajectoryEpoch& epoch) = 0;
-  /// Makes the file appear. Without it nothing is left behind.  @throws OutputError
+  /// Completes the file. Without this call no file remains.  @throws OutputError
   virtual void close() = 0;
 };
 
@@ -65,18 +65,18 @@ class TrajectoryWriter {
 /// CSV with header: gps_week, sow_s, position, velocity, attitude; standard deviations (N, E, D; roll, pitch, yaw) and
 /// correlations of position, velocity and attitude errors.
 [[nodiscard]] std::unique_ptr<TrajectoryWriter> make_csv_writer(const std::filesystem::path& path);
-/// SBET (136-byte records of doubles, rad, little endian). Acceleration (without gravity) and angular rate, both against the
-/// Earth and in body axes, are those of `motion`; the wander angle is zero: the attitude's yaw is the true heading. With
-/// `smrmsg` the file of standard deviations beside it (80-byte records).
+/// SBET (136-byte records of doubles, rad, little endian). Acceleration (without gravity) and angular rate, both with respect
+/// to the Earth and in body axes, are those of `motion`; the wander angle is zero: the attitude's yaw is the true heading.
+/// `smrmsg` is the file of standard deviations (80-byte records).
 [[nodiscard]] std::unique_ptr<TrajectoryWriter> make_sbet_writer(const std::filesystem::path& sbet,
                                                                  const std::filesystem::path& smrmsg);
 /// RTKLIB `.pos` (GPST calendar, degrees, ellipsoidal), positions and velocities with signed-root covariances. Q, ns, age and
-/// ratio are those of `gnss`; where there was none, Q = 7 (dead reckoning) and ns = 0.
+/// ratio are those of `gnss`; without GNSS, Q = 7 (dead reckoning) and ns = 0.
 [[nodiscard]] std::unique_ptr<TrajectoryWriter> make_pos_writer(const std::filesystem::path& path);
-/// KML tracks with UTC times, a track for each stretch of one GNSS quality, in its colour; thinned to steps of at least
-/// `min_step_m`. Altitudes are above mean sea level, as viewers take them; where the geoid is not known they are above the
-/// ellipsoid, the tracks are clamped to the ground, and the description says so.
-/// @param geoid_height_m  of the geoid above what the trajectory's heights count from, m
+/// KML tracks with UTC times, one track for each stretch of equal GNSS quality, coloured by quality; thinned to steps of at
+/// least `min_step_m`. Altitudes are above mean sea level, as viewers expect; if the geoid is not known they are above the
+/// ellipsoid, the tracks are clamped to the ground, and the description states this.
+/// @param geoid_height_m  height of the geoid above the height reference of the trajectory, m
 [[nodiscard]] std::unique_ptr<TrajectoryWriter> make_kml_writer(const std::filesystem::path& path, std::string_view name,
                                                                 std::optional<double> geoid_height_m, double min_step_m = 1.0);
 
@@ -85,11 +85,11 @@ class TrajectoryWriter {
 [[nodiscard]] std::unique_ptr<TrajectoryWriter> make_trajectory_writer(std::string_view format,
                                                                        const std::filesystem::path& stem,
                                                                        std::optional<double> geoid_height_m = {});
-/// The names that make_trajectory_writer knows.
+/// The names that make_trajectory_writer accepts.
 [[nodiscard]] const std::vector<std::string_view>& trajectory_formats();
 
-/// GNSS fixes as RTKLIB `.pos` with signed-root covariances; reads back to the digits printed (1e-9 deg, 1e-4 m, 1e-5 m of sd;
-/// of a fix with a sd below 1e-4 m as many more as give it four digits, down to a nanometre).
+/// GNSS fixes as RTKLIB `.pos` with signed-root covariances; reads back to the printed digits (1e-9 deg, 1e-4 m, 1e-5 m of sd;
+/// if a sd is below 1e-4 m, enough digits to give it four, down to a nanometre).
 void write_gnss_pos(const std::filesystem::path& path, const record::GnssRecording& gnss);
 /// IMU as CSV with the default header: mean rates over each interval.
 void write_imu_csv(const std::filesystem::path& path, const record::ImuRecording& imu);

@@ -9,24 +9,24 @@ namespace coast::noise {
 
 /// One-step prediction of an ARMA-GARCH series, sample by sample. Nothing is allocated after construction.
 ///
-/// Before the first sample y is its mean, e is 0, e^2 and s2 are the start variance: with the mean square of the residuals it
-/// gives those of ArmaGarchStart::kConditional.
+/// Before the first sample y is its mean, e is 0, e^2 and s2 are the start variance: if that is the mean square of the
+/// residuals, this is ArmaGarchStart::kConditional.
 class ArmaGarchFilter {
  public:
-  /// Of the next sample, given all before it.
+  /// Prediction of the next sample, given all before it.
   struct Prediction {
     double mean = 0.0;      ///< E[y[t] | past] [signal]: Stebler et al. (2011), eq. (14)
-    double variance = 0.0;  ///< s2[t] [signal^2], known before y[t] is: eqs. (9) and (13)
+    double variance = 0.0;  ///< s2[t] [signal^2], known before y[t]: eqs. (9) and (13)
   };
 
-  /// @param start_variance  [signal^2], > 0; without it the variance of e that the model has at all times
-  /// @throws std::invalid_argument  the model has a defect, or a start variance of zero or less
+  /// @param start_variance  [signal^2], > 0; if absent, the unconditional variance of e
+  /// @throws std::invalid_argument  the model has a defect, or the start variance is zero or less
   explicit ArmaGarchFilter(const ArmaGarch& model, std::optional<double> start_variance = {});
 
   [[nodiscard]] const Prediction& prediction() const { return next_; }
-  void observe(double y);  ///< takes the sample that was predicted
-  void miss();   ///< there is none: y is its prediction, e is 0, e^2 its expectation, also of the next kArmaGarchSettling
-  void reset();  ///< to before the first sample
+  void observe(double y);  ///< adds the sample that was predicted
+  void miss();   ///< sample missing: y is its prediction, e is 0, e^2 its expectation, e^2 also for the next kArmaGarchSettling
+  void reset();  ///< to the state before the first sample
 
  private:
   void advance(double x, double residual, double square);
@@ -39,7 +39,7 @@ class ArmaGarchFilter {
   std::vector<double> residual_;  ///< newest first
   std::vector<double> square_;
   std::vector<double> variance_;
-  int unsettled_ = 0;  ///< samples still to come whose squares the variance does not follow
+  int unsettled_ = 0;  ///< number of following samples whose squares are not used in the variance
   Prediction next_;
 };
 

@@ -1,6 +1,6 @@
 #pragma once
-// A process as an estimator sees it: a block over one sample interval as a function of free parameters, its derivatives, and
-// the closed-form step of the EM algorithm.
+// A process for the estimators: its state-space block over one sample interval as a function of free parameters, the
+// derivatives, and the closed-form M-step of the EM algorithm.
 
 #include <Eigen/Core>
 #include <cmath>
@@ -24,7 +24,7 @@ struct SampleBlock {
   [[nodiscard]] static SampleBlock zero(Eigen::Index states);
 };
 
-/// What one value of a signal is: the mean of `averaged` samples, `interval` s apart.
+/// Meaning of one value of a signal: the mean of `averaged` samples, `interval` s apart.
 struct SampleStep {
   SampleStep(double seconds, std::size_t count = 1) : interval(seconds), averaged(count) {}  // a bare interval is one sample
   [[nodiscard]] double duration() const { return interval * static_cast<double>(averaged); }
@@ -32,23 +32,23 @@ struct SampleStep {
   std::size_t averaged;
 };
 
-/// Whose samples, and how far apart.
+/// Sensor and sample interval.
 struct Sampling {
   Sensor sensor = Sensor::kGyro;
   double interval = 1.0;  ///< s
 };
 
-/// What is known of a signal before anything is estimated; ranges of parameters follow from it.
+/// Scale of a signal before estimation, from which the ranges of parameters follow.
 struct SignalScale {
   double interval = 1.0;  ///< s
   double duration = 1.0;  ///< s
-  double variance = 1.0;  ///< [signal]^2, mean and slope taken off
+  double variance = 1.0;  ///< [signal]^2, mean and slope removed
 };
 
 /// Expected second moments of a block's states given the whole signal, summed over all steps of all records.
 struct BlockMoments {
-  Eigen::MatrixXd first;     ///< E x[1] x[1]', over records
-  Eigen::MatrixXd before;    ///< E x[k] x[k]', over transitions k -> k+1
+  Eigen::MatrixXd first;     ///< E x[1] x[1]', summed over records
+  Eigen::MatrixXd before;    ///< E x[k] x[k]', summed over transitions k -> k+1
   Eigen::MatrixXd lagged;    ///< E x[k+1] x[k]'
   Eigen::MatrixXd after;     ///< E x[k+1] x[k+1]'
   double transitions = 0.0;  ///< their number
@@ -57,15 +57,15 @@ struct BlockMoments {
   double samples = 0.0;
 };
 
-/// A free parameter: inside it is unconstrained, u.
+/// A free parameter; the estimators use the unconstrained variable u.
 struct ParameterInfo {
   enum class Kind {
-    kVariance,  ///< exp(u); zero is a value it may have: the process is then not there
+    kVariance,  ///< exp(u); may go to zero: the process is then absent
     kRate,      ///< exp(u)
     kPartial,   ///< tanh(u): a partial autocorrelation
   };
   std::string_view name;  ///< "sigma2", "beta", ...
-  std::string_view unit;  ///< with `signal` for rad/s or m/s^2
+  std::string_view unit;  ///< contains `signal` for rad/s or m/s^2
   Kind kind = Kind::kVariance;
 
   [[nodiscard]] double value(double u) const { return kind == Kind::kPartial ? std::tanh(u) : std::exp(u); }
@@ -80,11 +80,11 @@ class Estimable {
   [[nodiscard]] virtual std::string_view symbol() const = 0;  ///< as in "WN + 2 GM + RW"
   [[nodiscard]] virtual std::vector<ParameterInfo> parameters() const = 0;
   [[nodiscard]] virtual Eigen::Index states() const = 0;
-  /// Whether there is a block for means of samples.
+  /// Whether a block for means of samples exists.
   [[nodiscard]] virtual bool has_averages() const { return true; }
-  /// Range of each u in which a record of this scale can tell anything.
+  /// Range of each u in which a record of this scale is informative.
   [[nodiscard]] virtual std::vector<Interval> ranges(const SignalScale& scale) const = 0;
-  /// The block at u over one step, and its derivatives with respect to each u (h has none). Of means of samples it may have
+  /// The block at u over one step, and its derivatives with respect to each u (h has none). For means of samples it may have
   /// more states than `states()`.
   [[nodiscard]] virtual SampleBlock block(std::span<const double> u, const SampleStep& step) const = 0;
   [[nodiscard]] virtual std::vector<SampleBlock> derivatives(std::span<const double> u, const SampleStep& step) const = 0;

@@ -1,6 +1,6 @@
 #pragma once
-// How good the estimators are: many records of known processes, each estimated in several ways, beside what can be known at
-// all.
+// Monte Carlo study of the estimators: many records of known processes, each estimated in several ways and compared with the
+// Cramer-Rao bound.
 
 #include <cstdint>
 #include <functional>
@@ -13,9 +13,10 @@
 namespace coast::noise {
 
 enum class Estimator {
-  kEm,              ///< from stated values, a stated number of iterations
-  kDefault,         ///< wavelet moments, then maximum likelihood: what `calibrate` does with a stated sum
-  kBestOfStarts,    ///< the best maximum likelihood from the truth and from starts drawn about it: what there is to be found
+  kEm,              ///< from given values, a given number of iterations
+  kDefault,         ///< wavelet moments, then maximum likelihood: what `calibrate` does with a given sum
+  kBestOfStarts,    ///< the best maximum likelihood from the truth and from random starts about it: approximates the global
+                    ///< maximum
   kWaveletMoments,  ///< wavelet moments alone
   kAllan,           ///< least squares on the Allan curve alone
 };
@@ -23,22 +24,22 @@ enum class Estimator {
 struct StudiedEstimator {
   std::string name;
   Estimator kind = Estimator::kDefault;
-  SumModel model;                  ///< that it fits; need not be the truth's
+  SumModel model;                  ///< model that it fits; need not be that of the truth
   std::vector<double> start = {};  ///< u, of EM
   int iterations = 500;            ///< of EM
   int starts = 6;                  ///< of kBestOfStarts
   bool intervals = false;          ///< 95 % by profile likelihood
 };
 
-/// What the records are drawn from.
+/// Model from which the records are simulated.
 struct StudyTruth {
-  SumModel model;  ///< processes; its mean plays no part
+  SumModel model;  ///< processes; its mean is not used
   std::vector<double> u;
   double level = 0.0;  ///< [signal], at the first sample
   double slope = 0.0;  ///< [signal]/s
 };
 
-/// Allan curves of realisations of an estimate about that of its record (Stebler et al. 2011, Figs. 2 and 3).
+/// Allan curves of realisations of an estimate, compared with that of its record (Stebler et al. 2011, Figs. 2 and 3).
 struct RestitutionPlan {
   std::size_t runs = 0;  ///< the first ones
   std::size_t realisations = 20;
@@ -52,22 +53,22 @@ struct EstimatorStudy {
   std::size_t runs = 0;
   std::uint64_t first_seed = 1;  ///< run r is drawn with first_seed + r
   std::vector<StudiedEstimator> estimators;
-  std::vector<SumModel> choices = {};  ///< of which BIC chooses, as `calibrate` does; empty: no choice is studied
+  std::vector<SumModel> choices = {};  ///< candidates for the choice by BIC, as in `calibrate`; empty: no choice is studied
   RestitutionPlan restitution = {};
 };
 
 /// One estimate of one record.
 struct StudyFit {
   std::vector<double> u;                   ///< processes of one kind in ascending order of their first parameter
-  std::vector<double> mean;                ///< none, level at the middle, or level and slope per second
-  std::vector<bool> zero;                  ///< a variance whose absence costs less than 1e-3 of log-likelihood
-  double log_likelihood = 0.0;             ///< also where the estimator does not look at it
+  std::vector<double> mean;                ///< empty, [level at the middle], or [level, slope per second]
+  std::vector<bool> zero;                  ///< a variance whose removal lowers the log-likelihood by less than 1e-3
+  double log_likelihood = 0.0;             ///< also if the estimator does not use it
   std::vector<double> trace;               ///< log-likelihood by iteration; of the first run
   int iterations = 0;                      ///< of EM, of the direct search
   int passes = 0;                          ///< over the record
   bool converged = false;                  ///< for EM: within its iterations
   double seconds = 0.0;                    ///< without intervals
-  std::vector<ProfileInterval> intervals;  ///< where asked for: one per parameter, then of the mean
+  std::vector<ProfileInterval> intervals;  ///< if requested: one per parameter, then of the mean
 };
 
 /// A record and realisations of its estimate.
@@ -82,27 +83,27 @@ struct EstimatorStudyResult {
   std::vector<Restitution> restitution;
 };
 
-/// Draws and estimates all runs, in parallel; the same bytes on any number of threads, times excepted.
-/// @param progress  called with the share that is done, from any thread
+/// Simulates and estimates all runs in parallel; the result is bitwise the same for any number of threads, except for times.
+/// @param progress  called with the fraction done, from any thread
 /// @throws std::invalid_argument  no runs, fewer than 100 samples, an interval of zero or less, a start that is missing, or an
 ///                                index that does not exist
 [[nodiscard]] EstimatorStudyResult run_estimator_study(const EstimatorStudy& study,
                                                        const std::function<void(double)>& progress = {});
 
-/// How often intervals held the truth.
+/// How often intervals contained the truth.
 struct Coverage {
   std::size_t inside = 0;
   std::size_t intervals = 0;
   [[nodiscard]] double share() const { return static_cast<double>(inside) / static_cast<double>(intervals); }
-  /// 95 % of what the share may be, were the intervals independent (Wilson 1927).
+  /// 95 % interval of the share, if the intervals are independent (Wilson 1927).
   [[nodiscard]] Interval uncertainty() const;
 };
 
 struct ParameterSummary {
   std::string name;  ///< "gauss_markov beta 2", "level", "slope"
   std::string unit;
-  std::optional<double> truth;  ///< absent where the truth has no such process
-  std::optional<double> bound;  ///< Cramer-Rao standard deviation at the truth of the value itself
+  std::optional<double> truth;  ///< absent if the truth has no such process
+  std::optional<double> bound;  ///< Cramer-Rao standard deviation of the value, at the truth
   double mean = 0.0;
   double sd = 0.0;  ///< over the runs
   double q05 = 0.0;
@@ -115,7 +116,7 @@ struct ParameterSummary {
 struct EstimatorSummary {
   std::vector<ParameterSummary> parameters;  ///< of the processes, then level and slope
   std::optional<Coverage> pooled;            ///< over the parameters of the processes
-  double largest_shortfall = 0.0;  ///< of log-likelihood against the best that any estimator found for this sum or a part of it
+  double largest_shortfall = 0.0;  ///< of log-likelihood below the best that any estimator found for this sum or a part of it
   double mean_shortfall = 0.0;
   double mean_iterations = 0.0;
   double mean_passes = 0.0;
@@ -129,14 +130,15 @@ struct EstimatorSummary {
 [[nodiscard]] std::vector<double> values_of(const StudiedEstimator& estimator, const std::vector<StudyFit>& fits,
                                             std::size_t parameter);
 
-/// u with the processes of one kind in ascending order of their first parameter: sums know no order.
+/// u with the processes of one kind in ascending order of their first parameter, because the order in a sum is arbitrary.
 [[nodiscard]] std::vector<double> in_order(const SumModel& model, const std::vector<double>& u);
 
-/// The truth's parameters in another sum: of the k-th process of a kind those of its k-th; absent where the truth has none.
+/// The truth's parameters for another sum: its k-th process of a kind has those of the k-th such process of the truth; absent
+/// if there is none.
 [[nodiscard]] std::vector<std::optional<double>> truth_in(const SumModel& model, const StudyTruth& truth);
 
 /// Cramer-Rao standard deviations of the values of the processes' parameters, and of level and slope by generalised least
-/// squares with the processes known. Empty where the sum has a process that the truth has not.
+/// squares with the processes known. Empty if the sum has a process that the truth does not have.
 [[nodiscard]] std::vector<double> bounds_of(const SumModel& model, const StudyTruth& truth, double interval,
                                             std::uint64_t samples);
 

@@ -1,5 +1,6 @@
 #pragma once
-// The exact Gaussian log-likelihood of static records under a sum of processes, its gradient, and what the EM algorithm needs.
+// The exact Gaussian log-likelihood of static records under a sum of processes, its gradient, and the E-step of the EM
+// algorithm.
 
 #include <Eigen/Core>
 #include <limits>
@@ -12,12 +13,12 @@ namespace coast::noise {
 
 /// Level and drift by generalised least squares, with their covariance.
 struct MeanEstimate {
-  Eigen::VectorXd value;  ///< none, [level at the middle], or [level, drift per second]
+  Eigen::VectorXd value;  ///< empty, [level at the middle], or [level, drift per second]
   Eigen::MatrixXd covariance;
 };
 
 struct LikelihoodValue {
-  double log_likelihood = 0.0;      ///< restricted: what estimators maximise
+  double log_likelihood = 0.0;      ///< restricted: maximised by the estimators
   double at_mean = 0.0;             ///< maximised over level and drift: for comparing sums that differ in their mean
   std::vector<MeanEstimate> means;  ///< one per record
 };
@@ -25,24 +26,27 @@ struct LikelihoodValue {
 struct LikelihoodSlope {
   double log_likelihood = 0.0;
   Eigen::VectorXd gradient;
-  /// sum over samples of (de de'/S + dS dS'/(2 S^2)), e the innovation, S its variance: the Fisher information at the data.
+  /// sum over samples of (de de'/S + dS dS'/(2 S^2)), e the innovation, S its variance: the Fisher information evaluated at the
+  /// data.
   Eigen::MatrixXd information;
 };
 
-/// One or several records of one sensor axis with the same processes; every record has a level and a drift of its own.
+/// One or several records of one sensor axis with the same processes; every record has its own level and drift.
 ///
 ///     log L = -1/2 sum_k (log 2 pi + log S_k + e_k^2 / S_k) - 1/2 log |X' V^-1 X| / |X' X| + m/2 log 2 pi
 ///
 /// with the innovations e_k at the level and drift that maximise it, X their m regressors and V the covariance of the samples:
-/// the restricted log-likelihood (Patterson & Thompson 1971; Harville 1977), which is that of all contrasts of the record that
-/// no level or drift can change (docs/decisions/0008-restricted-likelihood.md). By the Kalman filter, exactly, from the
-/// stationary start; holes are predicted across. The record is read once for a value and twice more for the gradient. Where the
-/// filter's gain has come to rest (relative 1e-13) it is kept.
+/// the restricted log-likelihood (Patterson & Thompson 1971; Harville 1977), i.e. the likelihood of all contrasts of the record
+/// that do not depend on level and drift (docs/decisions/0008-restricted-likelihood.md). Computed exactly by the Kalman filter
+/// from the stationary start; in holes the filter only predicts. The record is read once for a value and twice more for the
+/// gradient. Once the filter's gain is constant (relative 1e-13) it is no longer recomputed; for a long record without holes it
+/// is from the first sample on, and what the start changes is added.
 /// @note about 15 ns per sample for a value at 3 states (tools/bench).
 class Likelihood {
  public:
-  /// @param records  not empty; kept detrended, so a large constant costs no digits. All at the same interval.
-  /// @param averaged  samples of the sensor in each value of the records: block_means(record, averaged) beside 1
+  /// @param records  not empty; stored detrended, so that a large constant causes no loss of precision. All at the same
+  ///                 interval.
+  /// @param averaged  samples of the sensor in each value of the records, which are block_means(record, averaged) if not 1
   /// @throws std::invalid_argument  no samples, or intervals that differ
   Likelihood(const std::vector<StaticSignal>& records, SumModel model, std::size_t averaged = 1);
 
@@ -56,24 +60,30 @@ class Likelihood {
   [[nodiscard]] SignalScale scale() const;
   [[nodiscard]] const std::vector<Detrended>& records() const { return records_; }
 
-  /// -infinity where the filter meets an innovation variance that is not positive.
+  /// -infinity if an innovation variance is not positive.
   [[nodiscard]] LikelihoodValue value(const std::vector<double>& u) const;
   [[nodiscard]] LikelihoodSlope slope(const std::vector<double>& u) const;
+  /// With the information known from elsewhere, for instance from the spectrum: a long record without holes is then read the
+  /// same few times for any number of parameters.
+  [[nodiscard]] LikelihoodSlope slope(const std::vector<double>& u, const Eigen::MatrixXd& information) const;
 
-  /// E-step, on samples only: the log-likelihood at u and the moments of every term, in the order of the model's terms.
+  /// E-step, for records of samples only (averaged = 1): the log-likelihood at u and the moments of every term of the model, in
+  /// order.
   struct Expectation {
     double log_likelihood = 0.0;
     std::vector<BlockMoments> moments;
   };
-  /// @param memory  of the smoother, kept by the caller for the next call
+  /// @param memory  work space of the smoother, kept by the caller for the next call
   [[nodiscard]] Expectation expectation(const std::vector<double>& u, std::vector<double>& memory) const;
 
   /// e/sqrt(S) of every sample of a record, in the order of its values.
-  /// @param gate  samples beyond it are told but not believed, up to 20 in a row
+  /// @param gate  samples beyond it are reported but not used by the filter, up to 20 in a row
   [[nodiscard]] std::vector<double> standardised_innovations(const std::vector<double>& u, std::size_t record,
                                                              double gate = std::numeric_limits<double>::infinity()) const;
 
  private:
+  [[nodiscard]] LikelihoodSlope slope_with(const std::vector<double>& u, const Eigen::MatrixXd* information) const;
+
   std::vector<Detrended> records_;
   SumModel model_;
   std::size_t averaged_;

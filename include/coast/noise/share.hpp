@@ -8,9 +8,9 @@
 namespace coast::noise {
 
 /// A process of one member as it acts in the sum. Its states and their noise are the member's own; outputs and densities are
-/// multiplied with the weight. What the member rounds the sum does not round: it counts as the white noise that a filter takes
-/// it for.
-/// @param weight  up to 1; below 0 where the member's axis points against that of the sum
+/// multiplied by the weight. Rounding by the member is not rounding of the sum: it is replaced by the white noise that a filter
+/// uses for it.
+/// @param weight  up to 1; below 0 if the member's axis is opposite to that of the sum
 [[nodiscard]] ProcessPtr make_share(ProcessPtr own, const std::string& member, double weight, Sensor sensor);
 
 }  // namespace coast::noise

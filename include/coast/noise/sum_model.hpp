@@ -1,5 +1,5 @@
 #pragma once
-// A sum of estimable processes with level and drift: what is fitted to a static record.
+// A sum of estimable processes with level and drift: the model fitted to a static record.
 
 #include <string>
 #include <vector>
@@ -8,13 +8,14 @@
 
 namespace coast::noise {
 
-/// What is estimated of the mean beside the processes, by generalised least squares at every value of the parameters.
+/// Part of the mean that is estimated together with the processes, by generalised least squares at every value of the
+/// parameters.
 enum class Mean { kZero, kLevel, kLevelAndDrift };
 [[nodiscard]] constexpr int coefficients(Mean mean) {
   return static_cast<int>(mean);
 }
 
-/// Sum of processes, each with its stretch of the parameter vector u and of the state.
+/// Sum of processes, each with its part of the parameter vector u and of the state.
 class SumModel {
  public:
   struct Term {
@@ -32,7 +33,7 @@ class SumModel {
   [[nodiscard]] Mean mean() const { return mean_; }
   [[nodiscard]] std::size_t parameters() const { return parameters_; }
   [[nodiscard]] Eigen::Index states() const { return states_; }
-  /// Whether block means of a record have a block: all processes have one, and there is room for their states.
+  /// Whether a block for means of samples exists: all processes have one, and the total number of states is within the limit.
   [[nodiscard]] bool has_averages() const;
   [[nodiscard]] ParameterInfo parameter(std::size_t i) const;
   /// "beta 2" of the second Gauss-Markov process: unique within the model.

@@ -1,5 +1,5 @@
 #pragma once
-// Where antennas' phase centres are, as calibrations tabulate them.
+// Phase centres of antennas, as tabulated by calibrations.
 
 #include <Eigen/Core>
 #include <map>
@@ -13,10 +13,10 @@
 
 namespace coast::record {
 
-/// Of one band: the mean phase centre, and by how much phases are longer than from there.
+/// Mean phase centre offset and phase centre variations of one band.
 struct PhaseCentre {
-  /// From the antenna reference point, m: north, east, up of a receiver's antenna; x, y, z of a satellite's body, whose z
-  /// points to the Earth and whose y is along its panels, from the centre of mass.
+  /// m. Receiver antenna: north, east, up from the antenna reference point. Satellite antenna: x, y, z of the satellite's body
+  /// from the centre of mass; z points to the Earth, y is along the solar panels.
   Eigen::Vector3d offset = Eigen::Vector3d::Zero();
   double first = 0.0;  ///< rad: zenith distance (receiver) or nadir angle (satellite) of the first column
   double step = 0.0;   ///< rad, from column to column
@@ -25,8 +25,8 @@ struct PhaseCentre {
 };
 
 struct AntennaCalibration {
-  std::string type;                    ///< IGS name and radome, twenty columns; of a satellite its block
-  std::optional<Satellite> satellite;  ///< of a satellite's antenna
+  std::string type;                    ///< IGS name and radome, twenty columns; for a satellite its block type
+  std::optional<Satellite> satellite;  ///< set for a satellite's antenna
   std::optional<geo::GpsTime> from, until;
   std::map<std::pair<SatelliteSystem, char>, PhaseCentre> bands;
 };

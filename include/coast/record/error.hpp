@@ -23,10 +23,10 @@ class InputError : public std::runtime_error {
   Parts parts_;
 };
 
-/// The numbers failed (covariance not positive, no convergence, too few data): exit status 3.
+/// A computation failed (covariance not positive definite, no convergence, too few data): exit status 3.
 class NumericalError : public std::runtime_error {
  public:
-  /// @param check what was checked  @param epoch where, as text, may be empty  @param details value, bound, likely causes
+  /// @param check what was checked  @param epoch time as text, may be empty  @param details value, bound, likely causes
   NumericalError(const std::string& check, const std::string& epoch, const std::string& details);
 };
 

@@ -10,7 +10,7 @@
 
 namespace coast::record {
 
-/// RTKLIB's numbering, so that files and figures agree. kUnknown: the file does not say.
+/// RTKLIB's numbering, so that files and figures agree. kUnknown: not given in the file.
 enum class FixQuality { kUnknown = 0, kFixed = 1, kFloat = 2, kSbas = 3, kDgps = 4, kSingle = 5, kPpp = 6 };
 
 /// One GNSS position (and velocity) of the antenna.

@@ -18,15 +18,15 @@ struct ImuSample {
   Eigen::Vector3d dv;      ///< integral of f_ib, m/s
 };
 
-/// By what an IMU's white noise differs from its mean for a while: factors on the densities [power] of the error model.
+/// White noise of an IMU over a period, relative to its mean: factors on the densities [power] of the error model.
 struct NoiseLevel {
   geo::GpsTime from, to;
   Eigen::Vector3d gyro = Eigen::Vector3d::Ones();  ///< sensor's axes
   Eigen::Vector3d accel = Eigen::Vector3d::Ones();
 };
 
-/// Where a recording is the weighted sum of several IMUs, its members: what each of them measured by itself, in means over
-/// blocks, in the sensor's axes, in which the error model's shares are (a recording may have been turned to body axes since).
+/// For a recording that is the weighted sum of several IMUs (its members): the measurements of each member, as means over
+/// blocks, in sensor axes like the shares of the error model (the recording itself may since have been rotated to body axes).
 struct MemberBlocks {
   struct Means {
     Eigen::Vector3d gyro;   ///< rad/s
@@ -34,21 +34,21 @@ struct MemberBlocks {
   };
   struct Block {
     geo::GpsTime from, to;
-    std::vector<std::optional<Means>> means;  ///< one per member; nothing where it may not be used all along
+    std::vector<std::optional<Means>> means;  ///< one per member; nothing if it is not usable over the whole block
   };
   std::string source;  ///< file, for messages
   std::vector<std::string> names;
-  std::vector<Block> blocks;  ///< in order, none over another
+  std::vector<Block> blocks;  ///< in order, not overlapping
 };
 
-/// One IMU as recorded, in the sensor's own axes unless a function says otherwise. Strictly increasing in time.
+/// One IMU as recorded, in the sensor's own axes unless stated otherwise. Strictly increasing in time.
 struct ImuRecording {
   std::string source;  ///< file, for messages
   std::vector<ImuSample> samples;
   std::vector<float> temperature;  ///< degC, one per sample, or empty
-  double rate_hz = 0.0;            ///< samples over the time without gaps
-  std::vector<NoiseLevel> noise;   ///< in order, one where the other ends; empty: the same all the time
-  MemberBlocks members;            ///< of a synthetic IMU whose members are told apart; empty otherwise
+  double rate_hz = 0.0;            ///< number of samples divided by the time without gaps
+  std::vector<NoiseLevel> noise;   ///< in order, each begins where the previous one ends; empty: constant noise
+  MemberBlocks members;            ///< for a synthetic IMU with separate member data; empty otherwise
   Events events;                   ///< repairs and gaps found on reading
 };
 

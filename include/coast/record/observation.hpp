@@ -19,9 +19,9 @@ struct Observation {
   Signal signal;
   std::optional<double> code_m;        ///< pseudorange
   std::optional<double> phase_cycles;  ///< grows with range
-  std::optional<double> doppler_hz;    ///< above zero where the satellite approaches
+  std::optional<double> doppler_hz;    ///< positive when the satellite approaches
   std::optional<double> cn0_dbhz;
-  bool lost_lock = false;   ///< the phase may have slipped since the epoch before
+  bool lost_lock = false;   ///< a cycle slip is possible since the previous epoch
   bool half_cycle = false;  ///< the phase may be off by half a cycle
 };
 
@@ -36,10 +36,10 @@ struct ObservationRecording {
   std::string marker;
   std::string receiver;
   std::string antenna;                             ///< IGS name and radome, as in ANTEX
-  std::optional<Eigen::Vector3d> approximate_r_e;  ///< marker, ECEF, m; as stated, not to be trusted
+  std::optional<Eigen::Vector3d> approximate_r_e;  ///< marker, ECEF, m; as stated in the file, may be wrong
   Eigen::Vector3d antenna_offset_enu =
       Eigen::Vector3d::Zero();           ///< antenna reference point from the marker: east, north, up, m
-  std::map<int, int> glonass_channels;   ///< frequency number of a slot, where stated
+  std::map<int, int> glonass_channels;   ///< frequency number by slot, if stated
   std::vector<ObservationEpoch> epochs;  ///< strictly increasing in time
   Events events;
 };

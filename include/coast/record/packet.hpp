@@ -11,16 +11,16 @@
 
 namespace coast::record {
 
-/// One sample of an IMU as it came off the wire: its own counter, and when the computer saw it.
+/// One IMU sample as received: the device's counter, and the computer's time of arrival.
 struct Packet {
-  std::int64_t counter = 0;           ///< of the device, one more with every sample; may wrap
-  double arrival_s = 0.0;             ///< computer's time, s since any epoch, one for all devices
-  std::optional<double> master_s;     ///< GPS time stamped by the device, s of week; the master only
+  std::int64_t counter = 0;           ///< of the device, incremented with every sample; may wrap
+  double arrival_s = 0.0;             ///< computer's time, s since any epoch, the same for all devices
+  std::optional<double> master_s;     ///< GPS time stamped by the device, s of week; master device only
   std::optional<std::int64_t> pulse;  ///< number of the sync pulse that triggered this sample
-  std::size_t row = 0;                ///< of the recording's values
+  std::size_t row = 0;                ///< row in `rates` and `forces` of the recording
 };
 
-/// What one IMU sent, in order of arrival, in its own axes.
+/// Packets of one IMU in order of arrival, in its own axes.
 struct PacketRecording {
   std::string source;  ///< file, for messages
   std::vector<Packet> packets;

@@ -1,5 +1,5 @@
 #pragma once
-// Orbits and clocks of satellites as analysis centres tabulate them.
+// Satellite orbits and clocks as tabulated by analysis centres.
 
 #include <Eigen/Core>
 #include <map>
@@ -17,13 +17,13 @@ namespace coast::record {
 struct OrbitPoint {
   geo::GpsTime t;
   Eigen::Vector3d r_e = Eigen::Vector3d::Zero();  ///< centre of mass, ECEF, m
-  std::optional<double> clock_s;                  ///< without the periodic part of relativity
+  std::optional<double> clock_s;                  ///< without the periodic relativistic effect
 };
 
 /// A satellite's clock at one instant.
 struct ClockPoint {
   geo::GpsTime t;
-  double clock_s = 0.0;  ///< without the periodic part of relativity
+  double clock_s = 0.0;  ///< without the periodic relativistic effect
 };
 
 struct PreciseClocks {

@@ -1,5 +1,5 @@
 #pragma once
-// Names of satellites and of their signals, as RINEX 3 writes them.
+// Names of satellites and of their signals, as in RINEX 3.
 
 #include <compare>
 #include <cstdint>
@@ -17,7 +17,7 @@ enum class SatelliteSystem : std::uint8_t { kGps, kGlonass, kGalileo, kBeidou, k
 /// "GPS"
 [[nodiscard]] std::string_view name_of(SatelliteSystem system);
 
-/// A system and a number in it: PRN, slot of GLONASS, PRN less 100 of SBAS, less 192 of QZSS.
+/// A system and a number in it: PRN; GLONASS: slot; SBAS: PRN - 100; QZSS: PRN - 192.
 struct Satellite {
   SatelliteSystem system = SatelliteSystem::kGps;
   std::uint8_t number = 0;  ///< 1 to 99

@@ -1,8 +1,8 @@
 #pragma once
-// What a report shows, free of HTML: tiles, sections, panels of plots, tables, notes. panels.hpp builds the usual panels in
-// a line or two, render.hpp makes the one self-contained HTML file out of it.
+// Content of a report, without HTML: tiles, sections, panels of plots, tables, notes. panels.hpp builds the usual panels in a
+// line or two, render.hpp writes it as one self-contained HTML file.
 //
-// Every text is plain (the page escapes it); every axis and column names its unit; N, E, D in metres, angles in degrees.
+// Every text is plain (the page escapes it); every axis and column has a unit; N, E, D in metres, angles in degrees.
 
 #include <optional>
 #include <string>
@@ -16,7 +16,7 @@ namespace coast::report {
 
 enum class Verdict { kNone, kGood, kWarn, kBad };
 
-/// What a colour means; the page chooses the shade for screen (light, dark) and print. GNSS qualities: RTKLIB's colours.
+/// Meaning of a colour; the page chooses the shade for screen (light, dark) and print. GNSS qualities: RTKLIB's colours.
 enum class Tone {
   kAuto,  ///< the next colour of the palette
   kX,     ///< first of three components: N, x, roll
@@ -36,13 +36,13 @@ enum class Tone {
   kGood,
   kWarn,
   kBad,
-  kFaint  ///< lighter than muted: many curves that one is held against
+  kFaint  ///< lighter than muted: many curves for comparison with one
 };
 
 /// One number of the acceptance sheet.
 struct Tile {
   std::string label;
-  std::string value;  ///< formatted, without unit; "0.8 / 0.6 / 1.9" is welcome
+  std::string value;  ///< formatted, without unit; may be "0.8 / 0.6 / 1.9"
   std::string unit;
   Verdict verdict = Verdict::kNone;
   std::string explanation;  ///< one sentence: what it is and what good looks like
@@ -53,7 +53,7 @@ struct Tile {
     Tone tone = Tone::kAuto;
   };
   std::vector<Share> shares;
-  std::string section;  ///< id of the section or panel that a click leads to; may be empty
+  std::string section;  ///< id of the section or panel opened by a click; may be empty
 };
 
 struct Axis {
@@ -61,13 +61,13 @@ struct Axis {
   std::string label;
   std::string unit;              ///< may be empty for counts and ratios
   Scale scale = Scale::kLinear;  ///< kTime (x only): seconds since Page::start, shown with GPS seconds of week
-  /// Names in place of numbers (update types by row); empty: numbers.
+  /// Names instead of numbers (update types by row); empty: numbers.
   struct Tick {
     double value = 0.0;
     std::string label;
   };
   std::vector<Tick> ticks;
-  std::optional<std::pair<double, double>> range;  ///< shown at first; otherwise from the data
+  std::optional<std::pair<double, double>> range;  ///< initial range; otherwise from the data
 };
 
 struct Line {
@@ -78,7 +78,7 @@ struct Line {
   Style style = Style::kLine;
   std::string band_label;  ///< "1 sigma"; may be empty
   double width_px = 1.3;
-  bool hidden = false;  ///< off at first; the legend switches it on
+  bool hidden = false;  ///< initially off; the legend switches it on
 };
 
 /// Dots of one category (a GNSS quality, an update type); one per category, so that the legend switches each.
@@ -97,10 +97,10 @@ struct Bars {
   Tone tone = Tone::kAuto;
 };
 
-/// Box plots that lie along x, one on each row: whiskers, box and median are quantiles of a sample.
+/// Horizontal box plots, one per row: whiskers, box and median are quantiles of a sample.
 struct Boxes {
   struct Box {
-    double y = 0.0;  ///< its row; a tick of the y axis names it
+    double y = 0.0;  ///< row; a tick of the y axis gives its name
     double q05 = 0.0;
     double q25 = 0.0;
     double median = 0.0;
@@ -112,7 +112,7 @@ struct Boxes {
   Tone tone = Tone::kAuto;
 };
 
-/// A shaded stretch of the x axis: an outage, a static period.
+/// A shaded interval of the x axis: an outage, a static period.
 struct Interval {
   double from = 0.0;
   double to = 0.0;
@@ -127,14 +127,14 @@ struct Bound {
   Tone tone = Tone::kMuted;
 };
 
-/// A word beside a point: the number of an outage on the plan.
+/// A label next to a point: the number of an outage on the plan.
 struct Mark {
   double x = 0.0;
   double y = 0.0;
   std::string label;
 };
 
-/// One pair of axes with what is drawn on it.
+/// One pair of axes with its content.
 struct Plot {
   std::string title;  ///< of a cell in a grid; the panel has its own
   Axis x;
@@ -148,7 +148,7 @@ struct Plot {
   std::vector<Mark> marks;
   bool equal_aspect = false;  ///< plan view: one metre is as long in x as in y; a scale bar is drawn
   bool sky = false;           ///< polar: zenith in the middle, north up; x east and y north, in degrees from the zenith
-  std::string link;           ///< plots of one name zoom together in x; every kTime axis is linked without it
+  std::string link;           ///< plots with the same name zoom together in x; kTime axes are always linked
   int height_px = 0;          ///< 0: the usual height
 };
 
@@ -201,7 +201,7 @@ struct Section {
 struct Page {
   std::string title;
   std::string subtitle;
-  std::optional<geo::GpsTime> start;  ///< zero of every kTime axis; without it no seconds of week are shown
+  std::optional<geo::GpsTime> start;  ///< zero of every kTime axis; if absent, no seconds of week are shown
   std::vector<Tile> tiles;
   std::vector<Section> sections;
   std::string footer;  ///< program, version, command

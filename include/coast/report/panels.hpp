@@ -27,12 +27,12 @@ namespace coast::report {
 [[nodiscard]] Panel xy_panel(std::string id, std::string title, Axis x, Axis y, std::string caption = {});
 /// A grid of small plots, filled row by row with add_cell.
 [[nodiscard]] Panel grid_panel(std::string id, std::string title, int columns, std::string caption = {});
-/// Adds a plot over x (seconds) to a grid; the cells of one row zoom together. @return  holds until the next cell is added
+/// Adds a plot over x (seconds) to a grid; the cells of one row zoom together. @return  valid until the next cell is added
 Plot& add_cell(Panel& grid, std::string title, std::string x_label, std::string y_label, std::string unit);
 
 Line& add_line(Plot& plot, std::string label, Series series, Tone tone = Tone::kAuto);
 Points& add_points(Plot& plot, std::string label, Series series, Tone tone = Tone::kAuto);
-/// Counts of `values` in equal bins from the 0.05 % to the 99.95 % quantile; what lies outside goes to the outermost bins.
+/// Counts of `values` in equal bins from the 0.05 % to the 99.95 % quantile; values outside are counted in the outermost bins.
 Bars& add_histogram(Plot& plot, std::string label, std::vector<double> values, int bins, Tone tone = Tone::kAuto);
 void add_bound(Plot& plot, double value, std::string label = {});
 

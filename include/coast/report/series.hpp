@@ -1,5 +1,5 @@
 #pragma once
-// Curves as a page stores them, and the decimation that brings a stream of any length down to them.
+// Curves as stored in a page, and the decimation of a stream of any length to such a curve.
 
 #include <cstddef>
 #include <cstdint>
@@ -9,18 +9,18 @@
 
 namespace coast::report {
 
-/// One curve. x and y have one length; a curve need not be sorted in x (a track), a time series is.
+/// One curve. x and y have the same length; x is sorted for a time series, not for a track.
 struct Series {
   std::vector<double> x;
   std::vector<double> y;
-  std::vector<double> t;              ///< of a track: seconds since Page::start; ties the plan to the time axes. Else empty
+  std::vector<double> t;              ///< for a track: seconds since Page::start; links the plan to the time axes. Else empty
   std::vector<std::uint32_t> breaks;  ///< the curve is interrupted before each of these indices; increasing
-  /// Half the width of the band that each sample came with, NaN where it had none; empty without a band. The band itself is an
-  /// envelope of many samples once a curve is decimated; this is what the cursor reads.
+  /// Half width of the band of each sample, NaN if it had none; empty without a band. In a decimated curve the band is an
+  /// envelope of many samples; the cursor shows this value.
   std::vector<double> half_width;
-  std::uint64_t not_finite = 0;  ///< values left out because they are not finite; said under the panel
+  std::uint64_t not_finite = 0;  ///< values left out because they are not finite; reported under the panel
 
-  /// Lower and upper bound, shaded. Has its own x: its extremes need not coincide with the curve's.
+  /// Lower and upper bound, shaded. Has its own x, because its extremes need not coincide with those of the curve.
   struct Band {
     std::vector<double> x;
     std::vector<double> lower;
@@ -31,20 +31,18 @@ struct Series {
 };
 
 struct DecimationOptions {
-  std::size_t max_points = 16000;  ///< of the result, >= 16; exceeded only where the gaps alone come near that number
+  std::size_t max_points = 16000;  ///< of the result, >= 16; exceeded only if the number of gaps alone is near that
   double max_gap = std::numeric_limits<double>::infinity();  ///< a longer step in t (tracks) or x interrupts the curve
 };
 
 /// Decimates a stream of samples in bounded memory (about 1 MB at 16000 points) so that no peak is hidden.
 ///
-/// Consecutive samples are gathered into buckets of 2^k; a bucket keeps the samples with its least and its greatest y (for
-/// a track, of x too) at their true x, and whenever the buckets exceed the limit each two are merged, which is exact.
-/// So the extremes of every bucket, hence of the whole, and both ends of every uninterrupted piece are among the kept;
-/// nothing is lost up to max_points - 2 samples (a track: half of that). Of n samples a bucket holds at most about
-/// 4 n / max_points (a track: twice that).
-/// A band keeps the least lower and the greatest upper bound of each bucket, between its extremes (at an end: there); beside it
-/// each kept sample keeps the half width that it came with.
-/// A sample that is not finite is counted and interrupts the curve.
+/// Consecutive samples are collected in buckets of 2^k; a bucket keeps the samples with its smallest and largest y (for a
+/// track, also x) at their true x, and whenever the buckets exceed the limit, pairs are merged, which is exact. So the extremes
+/// of every bucket, hence of the whole, and both ends of every uninterrupted piece are kept; nothing is lost up to max_points -
+/// 2 samples (a track: half of that). With n samples a bucket holds at most about 4 n / max_points (a track: twice that). A
+/// band keeps the smallest lower and the largest upper bound of each bucket, between its extremes (at an end: there); each kept
+/// sample also keeps its own half width. A sample that is not finite is counted and interrupts the curve.
 class Decimator {
  public:
   /// @throws std::invalid_argument max_points < 16
@@ -52,7 +50,7 @@ class Decimator {
 
   void add(double x, double y);
   void add(double x, double y, double lower, double upper);
-  /// A point of a plane curve at time t, s since Page::start. One Decimator takes one of the three kinds.
+  /// A point of a plane curve at time t, s since Page::start. One Decimator accepts only one of the three kinds.
   void add_track(double t, double x, double y);
   /// The curve is interrupted before the next sample.
   void interrupt() { new_piece_ = true; }
@@ -64,7 +62,7 @@ class Decimator {
     double x;
     double y;
     double order;                                                  ///< time of a track, else the number of the sample
-    double half_width = std::numeric_limits<double>::quiet_NaN();  ///< of the band, at this very sample
+    double half_width = std::numeric_limits<double>::quiet_NaN();  ///< of the band, at this sample
   };
   struct Extremes {
     Sample least;
@@ -90,7 +88,7 @@ class Decimator {
   void append_band(std::size_t piece, Series::Band& band) const;
 
   DecimationOptions options_;
-  std::vector<Extremes> along_y_;  ///< one per bucket, as the next two
+  std::vector<Extremes> along_y_;  ///< one per bucket, like the next two
   std::vector<Extremes> along_x_;  ///< tracks only
   std::vector<Bounds> bounds_;
   std::vector<Piece> pieces_;
@@ -105,7 +103,7 @@ class Decimator {
   bool has_band_ = false;
 };
 
-/// The same for arrays at hand; the band is decimated on its own x.  @throws std::invalid_argument lengths differ
+/// The same for existing arrays; the band is decimated on its own x.  @throws std::invalid_argument lengths differ
 [[nodiscard]] Series decimate(const Series& series, const DecimationOptions& options = {});
 
 }  // namespace coast::report

@@ -12,22 +12,22 @@
 
 namespace coast::simulate {
 
-/// A stretch of the mission, seconds since its start: start <= t < start + duration.
+/// A period of the mission, seconds since its start: start <= t < start + duration.
 struct Interval {
   double start = 0.0;
   double duration = 0.0;
   [[nodiscard]] bool contains(double t) const { return t >= start && t < start + duration; }
 };
 
-/// A stretch in which the receiver is worse than it should be.
+/// A period of degraded GNSS.
 struct DegradedGnss {
   Interval when;
   record::FixQuality quality = record::FixQuality::kFloat;
   double sd_factor = 1.0;         ///< on the errors, white and correlated
-  double stated_sd_factor = 1.0;  ///< on the sigmas that the fix states; 1 beside a large sd_factor: a wrong fix
+  double stated_sd_factor = 1.0;  ///< on the stated sigmas; 1 with a large sd_factor: a wrong fix
 };
 
-/// All vectors are north, east, down; sd 0 is an error-free component (its stated sigma must not be).
+/// All vectors are north, east, down; sd 0 is an error-free component (its stated sigma must not be 0).
 struct GnssOptions {
   double rate_hz = 1.0;                                    ///< [0.001, 1000]
   double phase = 0.0;                                      ///< s from the start of the mission to the first fix, >= 0
@@ -38,18 +38,18 @@ struct GnssOptions {
     double correlation_time = 60.0;                ///< s, > 0
   };
   std::optional<Correlated> correlated;        ///< Gauss-Markov error on top of the white one
-  std::optional<Eigen::Vector3d> stated_sd;    ///< m; where absent, white and correlated together
-  std::optional<Eigen::Vector3d> velocity_sd;  ///< white noise of a velocity, m/s; where absent there is none
+  std::optional<Eigen::Vector3d> stated_sd;    ///< m; if absent, white and correlated together
+  std::optional<Eigen::Vector3d> velocity_sd;  ///< white noise of a velocity, m/s; if absent, no velocities
   double time_offset = 0.0;                    ///< s: a fix tagged t is valid at t - time_offset
   std::vector<Interval> gaps;                  ///< no fixes at all
-  std::vector<DegradedGnss> degraded;          ///< the first that contains the fix counts
+  std::vector<DegradedGnss> degraded;          ///< the first that contains the fix applies
 };
 
 /// Fixes at start + phase + k / rate, as long as the motion lasts.
 ///
 ///     r_ea_e = truth + C_n_e (white + correlated),   correlated[k+1] = exp(-dt/T) correlated[k] + w[k], stationary
 ///
-/// A gap removes fixes and changes no other: errors are drawn for every epoch.
+/// A gap removes fixes without changing the others: errors are drawn for every epoch.
 /// @throws std::invalid_argument  rate, phase, a negative sd, a stated sd that is not positive, a correlation time not positive
 [[nodiscard]] record::GnssRecording gnss_fixes(const AnalyticTrajectory& motion, geo::GpsTime start, const GnssOptions& options,
                                                std::uint64_t seed);

@@ -8,8 +8,8 @@
 namespace coast::simulate {
 
 /// A function of time around an instant t, as Taylor coefficients c[k] = f^(k)(t) / k!, k = 0..Order.
-/// Sums, products and the functions below are exact in the derivatives they carry; the order is part of the type, so that
-/// a derivative that was never computed cannot be used.
+/// Sums, products and the functions below are exact up to this order; the order is part of the type, so that a derivative that
+/// was not computed cannot be used.
 template <std::size_t Order>
 struct Jet {
   std::array<double, Order + 1> c{};

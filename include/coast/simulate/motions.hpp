@@ -1,5 +1,5 @@
 #pragma once
-// The motions that scenarios choose from: one file each under src/simulate/motions, one line each in the table.
+// The motions available to scenarios: one file each under src/simulate/motions, one line each in the table.
 
 #include <string>
 #include <string_view>
@@ -9,7 +9,7 @@
 
 namespace coast::simulate {
 
-/// What every motion takes.
+/// Parameters of every motion.
 struct MotionParameters {
   geo::Geodetic origin;
   double duration = 900.0;     ///< s

@@ -1,5 +1,5 @@
 #pragma once
-// What two GNSS receivers would have measured, a rover's on a moving body and a base's: codes, phases, Doppler, C/N0.
+// Simulated measurements of two GNSS receivers, a rover on a moving body and a base: codes, phases, Doppler, C/N0.
 
 #include <Eigen/Core>
 #include <cstdint>
@@ -11,12 +11,12 @@
 
 namespace coast::simulate {
 
-/// Something that hides part of the rover's sky for a while.
+/// An obstacle that hides part of the rover's sky for a period.
 struct Obstacle {
   Interval when;
-  double azimuth_from = 0.0;  ///< rad from north over east; where it is above `azimuth_to`, the arc goes over north
+  double azimuth_from = 0.0;  ///< rad from north over east; if above `azimuth_to`, the arc passes through north
   double azimuth_to = 6.283185307179586;
-  double elevation = 1.0;  ///< rad: satellites below are not tracked
+  double elevation = 1.0;  ///< rad: satellites below it are not tracked
 };
 
 struct ObservationOptions {
@@ -36,16 +36,16 @@ struct ObservationOptions {
 
   double vertical_delay = 3.0;        ///< m of ionosphere on L1 above the base
   double ionosphere_gradient = 1e-6;  ///< m of vertical delay per m towards the south
-  double wet_zenith_sd = 0.003;       ///< m, of the rover's difference from a standard atmosphere, Gauss-Markov of 1 h
+  double wet_zenith_sd = 0.003;       ///< m, rover relative to a standard atmosphere, Gauss-Markov with 1 h correlation time
 
   double slips_per_hour = 0.0;  ///< of each phase of the rover, of 1 to 20 cycles
   double flagged_share = 0.5;   ///< of slips that the receiver notices (loss-of-lock indicator)
   std::vector<Obstacle> obstacles;
 };
 
-/// A slip that was put in.
+/// A simulated cycle slip.
 struct CycleSlip {
-  geo::GpsTime t;  ///< first epoch behind it
+  geo::GpsTime t;  ///< first epoch after it
   record::Satellite satellite;
   char band = '1';
   int cycles = 0;
@@ -59,9 +59,9 @@ struct SimulatedObservations {
   std::vector<CycleSlip> slips;
 };
 
-/// Epochs at start + k / rate of the receivers' clocks, which are off by up to half a millisecond and jump back by one. Orbits
-/// are the broadcast ones of a constellation of equally spaced satellites; errors of orbits and satellite clocks, which are the
-/// same for both receivers, are left out.
+/// Epochs at start + k / rate by the receivers' clocks, whose errors reach half a millisecond and are reset by jumps of one
+/// millisecond. Orbits are the broadcast ones of a constellation of equally spaced satellites; errors of orbits and satellite
+/// clocks, which are the same for both receivers, are not simulated.
 ///
 ///     P = rho + c (dt_r - dt_s) + T + I f1^2/f^2 + m + e,   Phi = rho + c (dt_r - dt_s) + T - I f1^2/f^2 + lambda (N + w) + m
 ///     + e

@@ -1,5 +1,5 @@
 #pragma once
-// Seeded randomness: every process of every axis has a generator of its own, so that adding one changes no other.
+// Seeded random numbers: every process of every axis has its own generator, so that adding one changes no other.
 
 #include <cstdint>
 #include <initializer_list>

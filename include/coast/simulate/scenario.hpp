@@ -1,5 +1,5 @@
 #pragma once
-// A scenario file: a motion, an IMU and a GNSS receiver on it; and the recording that they give.
+// A scenario file: a motion with an IMU and a GNSS receiver; and the simulated recording.
 
 #include <cstdint>
 #include <filesystem>
@@ -21,10 +21,10 @@
 
 namespace coast::simulate {
 
-/// How a file named in the scenario becomes a tree (io::load_yaml).
+/// Reads a file named in the scenario into a tree (io::load_yaml).
 using TreeReader = std::function<config::Node(const std::filesystem::path&)>;
 
-/// A GNSS outage that the run of the recording should study: fixes stay in the recording.
+/// A GNSS outage to be studied when the recording is processed: the fixes stay in the recording.
 struct StudiedOutage {
   geo::GpsTime start;
   double duration = 0.0;  ///< s
@@ -56,11 +56,9 @@ struct StudiedOutage {
 ///         obstacles: [{elapsed_s: 300, duration_s: 60, azimuth_deg: [60, 200], below_deg: 50}]
 ///         slips_per_hour: 4                    # of each phase; and code_sd_m, phase_sd_m, code_multipath_sd_m, ...
 ///       degraded: [{elapsed_s: 500, duration_s: 30, quality: float, sd_factor: 30, stated_sd_factor: 10}]
-///     array:                                   # left out: one IMU; else further ones on the same body, each with noise of its
-///     own
-///       - {name: left, error_model: ../imu/xsens-dot.yaml, position_m: [0.1, -0.1, 0], axes: [x, y, z], mounting_deg: [0, 0,
-///       0],
-///          clock_offset_s: 0.004, clock_drift_ppm: 20}      # its tag is true time + offset + drift * elapsed
+///     array:                                   # left out: one IMU; else further ones on the same body, with their own noise
+///       - {name: left, error_model: ../imu/xsens-dot.yaml, position_m: [0.1, -0.1, 0], axes: [x, y, z],
+///          mounting_deg: [0, 0, 0], clock_offset_s: 0.004, clock_drift_ppm: 20}   # tag = true time + offset + drift * elapsed
 ///     outages: [{manoeuvre: roundabout, duration_s: 20}, {elapsed_s: 500, duration_s: 60}]   # for the run to study
 ///     start_gps: {week: 2374, sow: 208800}
 ///     seed: 1
@@ -85,9 +83,9 @@ struct Scenario {
   std::vector<ArrayImu> array;
   /// An outage of a scenario: at a time, or at the first manoeuvre of a name.
   struct Outage {
-    std::string manoeuvre;           ///< empty where the time is given
+    std::string manoeuvre;           ///< empty if the time is given
     double elapsed = 0.0;            ///< s since the start of the mission, or since the start of the manoeuvre
-    std::optional<double> duration;  ///< s; where absent, as long as the manoeuvre
+    std::optional<double> duration;  ///< s; if absent, as long as the manoeuvre
   };
   std::vector<Outage> outages;
   geo::GpsTime start;
@@ -97,22 +95,23 @@ struct Scenario {
   [[nodiscard]] static Scenario from(const config::Node& root, const TreeReader& read);
 };
 
-/// What the scenario's vehicle would have recorded, and where it really was.
+/// The simulated recordings of the scenario's vehicle, and its true trajectory.
 struct SimulatedMission {
   record::ImuRecording imu;  ///< sensor axes
   record::GnssRecording gnss;
-  record::Trajectory truth;  ///< of the IMU's point, at the start and at every IMU epoch
+  record::Trajectory truth;  ///< of the IMU, at the start and at every IMU epoch
   std::vector<StudiedOutage> outages;
 };
 
-/// The scenario's outages on its motion, in the order given.
+/// The scenario's outages as times on its motion, in the order given.
 /// @throws InputError  a manoeuvre does not occur in the motion (lists those that do)
 [[nodiscard]] std::vector<StudiedOutage> studied_outages(const Scenario& scenario, const MotionPlan& plan);
 
-/// The part of a scenario that no seed changes (motion, error-free increments, true states), computed once for many seeds.
+/// The part of a scenario that does not depend on the seed (motion, error-free increments, true states), computed once for many
+/// seeds.
 class ErrorFreeMission {
  public:
-  /// @param threads  at least 1; the same bytes for any number
+  /// @param threads  at least 1; the result is bitwise the same for any number
   /// @throws InputError  as `studied_outages`
   explicit ErrorFreeMission(const Scenario& scenario, int threads = 1);
 
@@ -120,8 +119,8 @@ class ErrorFreeMission {
     record::ImuRecording imu;  ///< sensor axes
     record::GnssRecording gnss;
   };
-  /// What the sensors record. May be called from several threads at a time.
-  /// @param model  absent: an error-free IMU  @param seed  in place of the scenario's
+  /// Simulated recordings. May be called from several threads at the same time.
+  /// @param model  absent: an error-free IMU  @param seed  instead of the scenario's
   [[nodiscard]] Recordings recorded(const std::optional<noise::ImuErrorModel>& model, std::uint64_t seed) const;
 
   [[nodiscard]] const record::Trajectory& truth() const { return truth_; }
@@ -136,12 +135,12 @@ class ErrorFreeMission {
   record::Trajectory truth_;
 };
 
-/// What an IMU of the scenario's array records, in its own axes and by its own clock.
-/// @param index  in `scenario.array`; seeds of its noise are its own
+/// Simulated recording of an IMU of the scenario's array, in its own axes and by its own clock.
+/// @param index  index in `scenario.array`; its noise has its own seeds
 [[nodiscard]] record::ImuRecording simulate_array_imu(const Scenario& scenario, std::size_t index, int threads = 1);
 
 /// One recording: the scenario's error model, the scenario's seed.
-/// @param threads  at least 1; the same bytes for any number
+/// @param threads  at least 1; the result is bitwise the same for any number
 /// @throws InputError  as `studied_outages`
 [[nodiscard]] SimulatedMission simulate(const Scenario& scenario, int threads = 1);
 

@@ -8,19 +8,20 @@
 
 namespace coast::simulate {
 
-/// Third order: what the angular acceleration of a body that banks with its turn rate needs of its course.
+/// Third order, as needed from the course for the angular acceleration of a body that banks with its turn rate.
 using SignalJet = Jet<3>;
 
 /// A change of level by `change`, nominally from `start` to `start + duration`: an error function with
-/// sigma = duration / 6, so 99.7 % of the change lies in the nominal time. The peak slope is 2.394 change / duration.
+/// sigma = duration / 6, so 99.7 % of the change is within the nominal time. The peak slope is 2.394 change / duration.
 struct Step {
   double start;     ///< s
   double duration;  ///< s, > 0
   double change;    ///< [signal]
 };
 
-/// A constant and a sum of steps. The error function is entire, so the sum is analytic; a step is cut at 6.5 sqrt(2) sigma
-/// from its middle, where it and its derivatives are below 1e-15 of their peaks: further away it is exactly constant.
+/// A constant and a sum of steps. The error function is entire, so the sum is analytic; a step is truncated at 6.5 sqrt(2)
+/// sigma from its middle, where its remainder and its derivatives are below 1e-15 of their peaks: further away it is exactly
+/// constant.
 class Steps {
  public:
   explicit Steps(double constant = 0.0, std::vector<Step> steps = {});
@@ -34,9 +35,9 @@ class Steps {
 
   double constant_;
   std::vector<Step> steps_;
-  // Time is cut into buckets, so that an evaluation meets only the steps in progress.
-  double first_ = 0.0;           // s, begin of the first bucket
-  std::vector<double> settled_;  // level from the steps that are over before the bucket begins
+  // Time is divided into buckets, so that an evaluation needs only the steps in progress.
+  double first_ = 0.0;           // s, start of the first bucket
+  std::vector<double> settled_;  // level from the steps that end before the bucket begins
   std::vector<std::vector<std::size_t>> in_progress_;
 };
 
@@ -47,7 +48,7 @@ struct Tone {
   double phase;      ///< rad
 };
 
-/// Steps plus tones that a common envelope switches on and off; where the envelope is zero the tones are exactly silent.
+/// Steps plus tones that a common envelope switches on and off; where the envelope is zero the tones are exactly zero.
 class Signal {
  public:
   Signal() = default;

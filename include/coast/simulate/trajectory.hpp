@@ -23,7 +23,7 @@ struct AttitudeRule {
   double lift = 0.0;
 };
 
-/// A named stretch of a motion, such as its roundabout: where an outage would tell most.
+/// A named part of a motion, such as its roundabout, where an outage is most informative.
 struct Manoeuvre {
   std::string name;
   double start = 0.0;     ///< s since the start of the motion
@@ -60,18 +60,18 @@ struct Kinematics {
   Eigen::Vector3d alpha_eb_b;  ///< time derivative of the components of omega_eb_b, rad/s^2
 };
 
-/// Another point of the same rigid body, l_b away [m, body axes].
+/// Motion of another point of the same rigid body, at l_b [m, body axes].
 [[nodiscard]] Kinematics at_point(const Kinematics& body, const Eigen::Vector3d& l_b);
-/// Rate against inertial space: omega_eb_b + C_e_b omega_ie_e [rad/s].
+/// Rate relative to inertial space: omega_eb_b + C_e_b omega_ie_e [rad/s].
 [[nodiscard]] Eigen::Vector3d omega_ib_b(const Kinematics& body);
 /// Specific force C_e_b (a_eb_e + 2 omega_ie_e x v_eb_e - g_e(r)), normal gravity of WGS 84 [m/s^2].
 [[nodiscard]] Eigen::Vector3d f_ib_b(const Kinematics& body);
 
 /// The motion of a plan. The path is laid on the sphere that touches the ellipsoid at the origin (radius sqrt(M N) plus
-/// the origin's height), by stereographic projection from the tangent plane: conformal, so the velocity has the course
-/// stated, and free of singularities anywhere, poles included. Path axes p (north-east-down of that sphere, north carried
-/// along the projection) agree with n at the origin; away from it they differ by the meridian convergence, and from the
-/// plumb line by about 5e-6 rad at 10 km. Position is consistent with velocity to 1e-9 m.
+/// the origin's height), by stereographic projection from the tangent plane: conformal, so the velocity has the stated course,
+/// and without singularities, also at the poles. Path axes p (north-east-down of that sphere, north by the projection) agree
+/// with n at the origin; away from it they differ by the meridian convergence, and from the plumb line by about 5e-6 rad at 10
+/// km. Position is consistent with velocity to 1e-9 m.
 class AnalyticTrajectory {
  public:
   /// @throws std::invalid_argument duration not positive, or above 2e5 s
@@ -85,7 +85,7 @@ class AnalyticTrajectory {
   [[nodiscard]] record::NavState nav_state(geo::GpsTime start, double t) const;
 
  private:
-  /// Integrals of the path's velocity, one Chebyshev series a channel and segment.
+  /// Integrals of the path's velocity, one Chebyshev series per channel and segment.
   static constexpr std::size_t kNodes = 16;
   struct Segment {
     double integral[3][kNodes + 1];  ///< north, east, height: coefficients in T_k, with the constant of integration

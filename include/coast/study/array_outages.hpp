@@ -1,6 +1,6 @@
 #pragma once
-// What merging several IMUs is worth to a navigation filter: outages with known truth, the same missions for every way of
-// merging.
+// Benefit of merging several IMUs for a navigation filter: outages with known truth, the same missions for every merging
+// method.
 
 #include <array>
 #include <cstdint>
@@ -14,7 +14,7 @@
 
 namespace coast::study {
 
-/// Several IMUs at one place with one set of axes and one clock, so that what is compared is merging alone.
+/// Several IMUs at one position with common axes and clock, so that only merging is compared.
 struct ArrayOutagePlan {
   simulate::Scenario scenario;  ///< its own error model and seed are not used
   noise::ImuErrorModel slow;    ///< drawn for every sensor: constants, Gauss-Markov processes
@@ -25,17 +25,17 @@ struct ArrayOutagePlan {
   std::size_t seeds = 1;
 };
 
-/// One way, over the seeds.
+/// One merging method, over the seeds.
 struct ArrayOutageRun {
   std::string name;  ///< single 1, ..; mean; weighted; garch; corrected; extended
   std::vector<OutageResult> outages;
 };
 
-/// Every seed: K sensors' errors are drawn on one mission, each sensor by itself and every merge of them goes through `coast
-/// process`'s way with the scenario's first outage withheld. A single sensor's filter knows its slow errors and the density at
-/// frequency zero of its noise; a merge has what the differences of the sensors tell (`array::remaining_errors`), with noise
-/// over time where GARCH gives it; the extended mechanisation knows of every sensor what its own filter knows. On all threads;
-/// the same numbers for any number of them.
+/// For every seed the errors of K sensors are drawn on one mission; each single sensor and every merge is processed as by
+/// `coast process`, with the scenario's first outage withheld. The error model of a single sensor has its slow errors and the
+/// density of its noise at frequency zero; that of a merge comes from the differences of the sensors
+/// (`array::remaining_errors`), with noise over time if GARCH gives it; the extended mechanisation uses the single-sensor
+/// models. Runs on all threads; the result is the same for any number of them.
 /// @throws InputError  no outage in the scenario; fewer than two sensors, or different numbers of gyros and accelerometers
 [[nodiscard]] std::vector<ArrayOutageRun> run_array_outages(const ArrayOutagePlan& plan,
                                                             const std::function<void(double)>& progress = {});

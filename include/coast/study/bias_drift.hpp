@@ -1,6 +1,6 @@
 #pragma once
-// Biases that drift more than the error model of an IMU allows: a data sheet's instability is that of a sensor at rest at one
-// temperature, and not that of one which shakes in the sun.
+// Biases that drift more than the error model of an IMU allows: a data sheet states the instability of a sensor at rest at
+// constant temperature, not under vibration and changing temperature.
 
 #include <Eigen/Core>
 #include <algorithm>
@@ -11,7 +11,7 @@
 
 namespace coast::study {
 
-/// On the stationary sigma of the Gauss-Markov biases of each axis, x, y, z of the sensor.
+/// Factors on the stationary sigma of the Gauss-Markov biases of each axis, x, y, z of the sensor.
 struct DriftFactors {
   Eigen::Vector3d gyro = Eigen::Vector3d::Ones();
   Eigen::Vector3d accel = Eigen::Vector3d::Ones();
@@ -19,7 +19,8 @@ struct DriftFactors {
 };
 
 /// One step of the EM algorithm for the stationary variance (Shumway & Stoffer 1982): the mean of x^2 + var x over the knots,
-/// over the model's, as a factor on sigma; 1 where it is not above `least`, and for an axis without such a process.
+/// relative to the model's variance, as a factor on sigma; 1 if it is not above `least`, and for an axis without such a
+/// process.
 [[nodiscard]] DriftFactors drift_seen(const estimate::StateLayout& layout, const std::vector<estimate::SmoothedKnot>& knots,
                                       double least);
 

@@ -1,5 +1,5 @@
 #pragma once
-// A computed trajectory against a reference: errors = estimate - reference, at the reference's epochs, in its N, E, D.
+// A computed trajectory compared with a reference: errors = estimate - reference, at the reference's epochs, in its N, E, D.
 
 #include <functional>
 #include <optional>
@@ -18,17 +18,17 @@ struct ErrorSample {
   Eigen::Vector3d sd_attitude = Eigen::Vector3d::Zero();  ///< rad
 };
 
-/// Error of one state against another at the same instant.
+/// Error of one state relative to another at the same instant.
 [[nodiscard]] ErrorSample error_of(const record::TrajectoryEpoch& estimate, const record::NavState& reference);
 
-/// Of one vector of the errors, axis by axis, SI and rad.
+/// Statistics of one error vector, axis by axis, SI and rad.
 struct AxisErrors {
   Eigen::Vector3d rms = Eigen::Vector3d::Zero();
   Eigen::Vector3d max = Eigen::Vector3d::Zero();
-  std::optional<Eigen::Vector3d> inside_95;  ///< share within 1.96 predicted sigma, where a sigma is predicted
+  std::optional<Eigen::Vector3d> inside_95;  ///< share within 1.96 predicted sigma, if a sigma is predicted
 };
 
-/// What the reference does not have is left out.
+/// Quantities that the reference does not have are left out.
 struct ErrorSummary {
   std::size_t epochs = 0;
   AxisErrors position;
@@ -36,7 +36,7 @@ struct ErrorSummary {
   std::optional<AxisErrors> attitude;
 };
 
-/// Sums errors up as they come: memory does not grow with the mission.
+/// Accumulates errors one by one: memory does not grow with the mission.
 class ErrorStatistics {
  public:
   void add(const ErrorSample& sample);
@@ -57,7 +57,7 @@ class ErrorStatistics {
   Sums attitude_;
 };
 
-/// Takes a trajectory epoch by epoch and compares it with the reference at each of the reference's epochs.
+/// Compares a trajectory, added epoch by epoch, with the reference at each of the reference's epochs.
 class Comparison {
  public:
   using Sink = std::function<void(const ErrorSample&)>;

@@ -1,5 +1,5 @@
 #pragma once
-// What many outages say of one solution.
+// Statistics of one solution over many outages.
 
 #include <array>
 #include <span>
@@ -15,7 +15,7 @@ enum class DriftMeasure { kNorth, kEast, kDown, kHorizontal };
 /// Largest absolute error inside each outage, m, in their order.
 [[nodiscard]] std::vector<double> drifts(std::span<const OutageResult> outages, DriftMeasure measure, bool smoothed);
 
-/// Of absolute errors, m.
+/// Statistics of absolute errors, m.
 struct Spread {
   double median = 0.0;
   double p68 = 0.0;
@@ -31,22 +31,22 @@ struct Drift {
   Spread horizontal;                                                  ///< largest horizontal error of each outage
   std::array<Spread, 3> largest;                                      ///< N, E, D: largest absolute error
   std::array<Spread, 3> end;                                          ///< N, E, D: at the last epoch before the next used fix
-  Eigen::Vector3d predicted_end_rms_m = Eigen::Vector3d::Zero();      ///< of the sigma stated there
+  Eigen::Vector3d predicted_end_rms_m = Eigen::Vector3d::Zero();      ///< of the predicted sigma there
   Eigen::Vector3d predicted_largest_rms_m = Eigen::Vector3d::Zero();  ///< of the largest sigma inside the outage
   double inside_95 = 0.0;                                             ///< share of all errors, axis by axis, within 1.96 sigma
-  std::optional<Spread> against_gnss;                                 ///< horizontal, against the withheld fixes
+  std::optional<Spread> against_gnss;                                 ///< horizontal, relative to the withheld fixes
 };
-/// @param outages  not empty; with a smoothed solution where that is asked for
+/// @param outages  not empty; with a smoothed solution if `smoothed`
 [[nodiscard]] Drift drift_of(std::span<const OutageResult> outages, bool smoothed);
 
-/// How much further the forward solution is off at the end of an outage than the smoothed one in its middle, one sigma each,
-/// where everything is known on either side: white noise integrated m times has 2^(2m - 1); of accelerometers m = 2, of gyros,
-/// through the tilt, m = 3.
+/// Ratio of the forward error at the end of an outage to the smoothed error in its middle, one sigma each, if everything is
+/// known on both sides: 2^(2m - 1) for white noise integrated m times; m = 2 for accelerometers, m = 3 for gyros, through the
+/// tilt.
 inline constexpr double kSmoothingGainOfAccelNoise = 8.0;
 inline constexpr double kSmoothingGainOfGyroNoise = 32.0;
 
-/// Horizontal drift that white gyro noise alone sets, per axis: what remains where position, velocity, attitude and every other
-/// sensor error are known at the start of a gap in level, unaccelerated motion.
+/// Horizontal drift due to white gyro noise alone, per axis: lower limit if position, velocity, attitude and every other sensor
+/// error are known at the start of a gap in level, unaccelerated motion.
 ///
 ///     sigma(T)^2 = Q g^2 integral over s of ((T - s)^2 / 2)^2 = Q g^2 T^5 / 20
 ///

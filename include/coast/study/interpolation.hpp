@@ -7,9 +7,9 @@
 namespace coast::study {
 
 /// State between two epochs at t in [a.t, b.t]: position by the cubic through both positions and velocities, velocity by that
-/// cubic's derivative blended to the ends, attitude along the shortest rotation. Without velocities position is linear.
-/// Position error below max|d4 r/dt4| dt^4 / 384. Where the update of a filter lies between the two, velocity is linear: the
-/// derivative of a step would be part of it.
+/// cubic's derivative, blended to match both ends, attitude along the shortest rotation. Without velocities position is linear.
+/// Position error below max|d4 r/dt4| dt^4 / 384. If a filter update lies between the two, velocity is linear: otherwise it
+/// would contain the derivative of the correction step.
 [[nodiscard]] record::NavState interpolate(const record::NavState& a, const record::NavState& b, geo::GpsTime t,
                                            bool has_velocity = true);
 
@@ -17,20 +17,20 @@ namespace coast::study {
 [[nodiscard]] std::optional<record::NavState> state_at(const record::Trajectory& trajectory, geo::GpsTime t,
                                                        double longest_gap_s = 2.0);
 
-/// The state of another point of the body: r + C l, v + C (omega x l). @param omega_eb_b rate against the Earth, rad/s
+/// The state of another point of the body: r + C l, v + C (omega x l). @param omega_eb_b rate relative to the Earth, rad/s
 [[nodiscard]] record::NavState at_point(const record::NavState& nav, const Eigen::Vector3d& l_b,
                                         const Eigen::Vector3d& omega_eb_b);
-/// Mean rate against the Earth between two epochs, body axes, rad/s.
+/// Mean rate relative to the Earth between two epochs, body axes, rad/s.
 [[nodiscard]] Eigen::Vector3d mean_rate(const record::NavState& a, const record::NavState& b);
 
-/// Mean acceleration against the Earth between two epochs, axes of the body half-way, m/s^2.
+/// Mean acceleration relative to the Earth between two epochs, in body axes at the midpoint, m/s^2.
 [[nodiscard]] Eigen::Vector3d mean_acceleration(const record::NavState& a, const record::NavState& b);
 
-/// Whether the positions differ from what the velocities say by more than a jerk of 50 m/s^3 explains: an update of a filter
-/// lies between the two epochs, and differences over it are no motion.
+/// Whether positions and velocities disagree by more than a jerk of 50 m/s^3 explains: then a filter update lies between the
+/// two epochs, and their differences are not motion.
 [[nodiscard]] bool corrected_between(const record::NavState& a, const record::NavState& b);
 
-/// Motion of a trajectory that goes by epoch by epoch; over an update of the filter that of the interval before it.
+/// Motion of a trajectory that is passed in epoch by epoch; across a filter update that of the previous interval.
 class PassingMotion {
  public:
   /// @return over the interval that ends there; zero at the first epoch

@@ -1,5 +1,5 @@
 #pragma once
-// What a vehicle does over a stretch of time, in one word.
+// Classifies the motion of a vehicle over a period.
 
 #include <string_view>
 
@@ -7,7 +7,7 @@
 
 namespace coast::study {
 
-/// In the order of how much of the sensors' errors they bring out.
+/// In increasing order of their effect on sensor errors.
 enum class Manoeuvre { kStatic, kStraight, kAccelerating, kTurn };
 [[nodiscard]] std::string_view name(Manoeuvre manoeuvre);
 
@@ -16,8 +16,8 @@ enum class Manoeuvre { kStatic, kStraight, kAccelerating, kTurn };
 ///   turn          the course changes by 3 deg/s or more, mean absolute rate of the seconds faster than 0.5 m/s
 ///   accelerating  speed changes by 0.5 m/s^2 or more, root mean square
 ///   straight      otherwise
-/// A stretch shorter than 3 s is judged with the seconds around it. Where the trajectory has no position the second is left
-/// out; straight where none is left.
+/// A period shorter than 3 s is classified with the seconds around it. Seconds without a position are left out; straight if
+/// none is left.
 [[nodiscard]] Manoeuvre manoeuvre_of(const record::Trajectory& trajectory, geo::GpsTime from, geo::GpsTime to);
 
 }  // namespace coast::study

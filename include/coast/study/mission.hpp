@@ -1,5 +1,5 @@
 #pragma once
-// From recordings in body axes to a mission that can be filtered: standstill, noise and start.
+// Prepares recordings in body axes for the filter: standstill, noise and start.
 
 #include <functional>
 #include <memory>
@@ -15,17 +15,17 @@
 
 namespace coast::study {
 
-/// Long work tells how far it is: what is being done, and the fraction of it.
+/// Progress of long computations: the current step, and the fraction of it that is done.
 using Progress = std::function<void(const char* what, double fraction)>;
 
-/// What the configuration leaves to the data.
+/// Parameters that the configuration leaves to be determined from the data.
 struct Unstated {
   estimate::NoiseFitChoice noise{
-      .gnss_scale = false, .correlated_gnss = false, .imu_white_noise = false};  ///< fitted where innovations contradict it
-  bool time_offset = false;                                                      ///< estimated where the innovations show one
-  bool lever_arm = false;  ///< estimated where they show another than the stated one
+      .gnss_scale = false, .correlated_gnss = false, .imu_white_noise = false};  ///< fitted if the innovations contradict it
+  bool time_offset = false;                                                      ///< estimated if the innovations show one
+  bool lever_arm = false;  ///< estimated if they contradict the stated one
   double time_offset_seen_s =
-      0.0;  ///< as the turns of IMU and GNSS tell it, to 0.05 s; taken where the filter finds it likelier
+      0.0;  ///< from the turns in IMU and GNSS, to 0.05 s; used if it has a higher likelihood in the filter
 };
 
 /// How a mission is processed; filled from run.yaml.
@@ -36,33 +36,34 @@ struct Setup {
   bool high_order_compensation = false;
   noise::ImuErrorModel model;
   estimate::FilterOptions filter;
-  bool vehicle_forward = false;            ///< the body points where the vehicle goes
-  std::optional<ins::InitialState> start;  ///< given; otherwise found
-  /// Sensor states that a given start begins with, by the layout; empty: what the alignment knows.
+  bool vehicle_forward = false;            ///< body x points in the direction of travel
+  std::optional<ins::InitialState> start;  ///< if given; otherwise found by alignment
+  /// Sensor states of a given start, in the order of the layout; empty: from the alignment.
   Eigen::VectorXd start_sensor_errors;
-  int start_rounds = 4;  ///< at most, of the refinement of a start that was found
-  /// Where the first studied outage begins: the start is refined with fixes before it alone, or the outage would look too good.
+  int start_rounds = 4;  ///< maximum number of refinements of a start found by alignment
+  /// Start of the first studied outage: the start is refined only with fixes before it, so that outage results are not too
+  /// optimistic.
   std::optional<geo::GpsTime> refine_before;
-  /// Noise is fitted to what comes before it, where that is at least 100 s.
+  /// Noise is fitted to the data before this time, if that is at least 100 s.
   std::optional<geo::GpsTime> fit_before;
   std::optional<estimate::NoiseFitChoice> noise_fit;
   Unstated unstated;
-  /// The delivered solution is smoothed as a batch; outages that are swept and starts that are refined are not.
+  /// The delivered solution uses the batch smoother; swept outages and refined starts do not.
   std::optional<estimate::BatchOptions> batch;
-  /// Tight coupling, of the prepared mission alone: it is prepared with the fixes.
+  /// Tight coupling, only of the prepared mission: the preparation uses the fixes.
   std::shared_ptr<const estimate::CarrierObservations> carrier;
 };
 
-/// Which of the two that say where the antenna was at the time of a fix.
+/// Selects time offset and lever arm, which together give the antenna position at the time of a fix.
 struct AntennaChoice {
   bool time_offset = false;
   bool lever_arm = false;
 };
 
-/// What the first minutes say of them: differences from what is stated, zero where not estimated.
+/// Estimates of both from the first minutes: differences from the stated values, zero if not estimated.
 struct AntennaFit {
   double log_likelihood = 0.0;
-  double excess = 1.0;  ///< squared innovations over their expectation, at least 1; the sigmas are widened by it
+  double excess = 1.0;  ///< squared innovations over their expectation, at least 1; the sigmas are scaled by it
   double time_offset_s = 0.0;
   double time_offset_sd_s = 0.0;
   Eigen::Vector3d lever_arm_m = Eigen::Vector3d::Zero();
@@ -72,10 +73,9 @@ struct AntennaFit {
 /// A mission in body axes, aligned. Owns its recordings.
 class PreparedMission {
  public:
-  /// Compensates, finds standstill, aligns, tests what the setup leaves unstated, fits the noise where the setup asks for it or
-  /// the innovations contradict it, and refines the start: from where
-  /// alignment succeeded the filter runs back to the first epoch, then the first minutes are smoothed and the start taken from
-  /// there until it rests. A given start is taken as it is.
+  /// Compensates, finds standstill, aligns, tests the unstated parameters, fits the noise if the setup requests it or the
+  /// innovations contradict it, and refines the start: from where alignment succeeded the filter runs back to the first epoch;
+  /// then the first minutes are smoothed and the start is set from them until it converges. A given start is used unchanged.
   /// @throws InputError  IMU and GNSS do not overlap in time  @throws NumericalError  the alignment fails
   PreparedMission(record::ImuRecording imu, record::GnssRecording gnss, Setup setup, const Progress& progress);
   PreparedMission(const PreparedMission&) = delete;
@@ -87,38 +87,39 @@ class PreparedMission {
   [[nodiscard]] const estimate::FilterOptions& options() const { return setup_.filter; }
   [[nodiscard]] const ins::InitialState& start() const { return start_; }
   [[nodiscard]] const std::optional<estimate::NoiseFit>& noise_fit() const { return noise_fit_; }
-  /// What was taken in place of what the setup leaves unstated, an event each.
+  /// Values used for parameters that the setup leaves unstated, one event each.
   [[nodiscard]] const record::Events& adaptations() const { return adaptations_; }
-  /// Whether the error model is without what is multiplied by a signal, unlike that of the setup.
+  /// Whether errors that multiply a signal (e.g. scale factors) were removed from the error model of the setup.
   [[nodiscard]] bool gain_errors_left_out() const { return gain_errors_left_out_; }
-  /// By how much biases drift more than the setup's error model says.
+  /// Factors by which biases drift more than in the setup's error model.
   [[nodiscard]] const DriftFactors& drift() const { return drift_; }
-  /// The heading rests on the assumption that the body's x axis points where the vehicle goes.
+  /// Whether the heading relies on the assumption that the body's x axis points in the direction of travel.
   [[nodiscard]] bool heading_assumed() const { return heading_assumed_; }
   /// The start for a filter of any layout.
   [[nodiscard]] estimate::FilterState start_state(const estimate::ForwardFilter& filter) const;
-  /// Takes noise as fitted from here on.
+  /// Uses the fitted noise from here on.
   void adopt(const estimate::NoiseFit& fit);
   /// Fits noise over at most the first `longest_s` seconds, the search beginning at `from`.
   [[nodiscard]] estimate::NoiseFit fit(const estimate::NoiseFitChoice& choice, const estimate::NoiseAdjustment& from,
                                        double longest_s, const Progress& progress) const;
 
-  /// What a backward pass begins with that is to know nothing of the forward one but where it ended: its states, with the
-  /// uncertainty of the start.
+  /// Start of a backward pass that uses only the final states of the forward pass: these states, with the uncertainty of the
+  /// start.
   [[nodiscard]] estimate::FilterState far_end(const estimate::FilterState& last) const;
-  /// The same for a backward filter that is to be weighed against the forward one: nothing may count twice that the forward
-  /// filter has found. Navigation states ten times as uncertain as there, so that a hundredth of that information counts twice;
-  /// sensor states as uncertain as the error model alone leaves them by then; auxiliary states at their prior.
+  /// Independent end: the same for a backward filter that is combined with the forward one, so that no information of the
+  /// forward filter counts twice. Navigation states have ten times the sigmas of `last`, so that a hundredth of that
+  /// information counts twice; sensor states have the uncertainty of the error model alone at that time; auxiliary states have
+  /// their prior.
   [[nodiscard]] estimate::FilterState ignorant_end(const estimate::FilterState& last) const;
-  /// Filters backward from `from` at the far end to the epoch of the start; delivers states in forward time (from last to
-  /// first) before each knot's updates. The recordings are reversed in place meanwhile.
-  /// @return the state at the start's epoch, its updates done
+  /// Filters backward from `from` at the end of the mission to the epoch of the start; passes states, in forward time and from
+  /// last to first, to `at_knots` before each knot's updates. The recordings are temporarily reversed in place.
+  /// @return the state at the start's epoch, after its updates
   estimate::FilterState run_backward(const estimate::FilterOptions& options, const estimate::FilterState& from,
                                      const std::function<void(const estimate::FilterState&)>& at_knots,
                                      const Progress& progress);
 
  private:
-  static constexpr double kFirstMinutes = 300.0;  ///< s that the start is refined over
+  static constexpr double kFirstMinutes = 300.0;  ///< s over which the start is refined
 
   void find_standstill();
   void align(const Progress& progress);
@@ -140,8 +141,8 @@ class PreparedMission {
   void adapt_drift();
   void note_adaptations();
   void restart_behind_gaps();
-  /// Filters so many seconds from the start, also those that a studied outage withholds later: what is sought there is
-  /// constant, a few numbers from hundreds of fixes.
+  /// Filters the first `seconds`, including fixes that a studied outage withholds later: only a few constant parameters are
+  /// estimated from hundreds of fixes.
   [[nodiscard]] estimate::FilterResult first_seconds(double seconds, const estimate::FilterOptions& options,
                                                      const estimate::FilterOutputs& outputs = {}) const;
   [[nodiscard]] double fix_interval_s() const;  ///< mean
@@ -151,12 +152,12 @@ class PreparedMission {
   Setup setup_;
   std::unique_ptr<estimate::Mission> mission_;
   ins::InitialState start_;
-  Eigen::VectorXd start_sensor_errors_;  ///< estimated, by the layout of the setup; empty: zero
-  estimate::KnotStore first_knots_;      ///< of the first minutes; one for all passes of the preparation, and empty after it
+  Eigen::VectorXd start_sensor_errors_;  ///< estimated, in the order of the setup's layout; empty: zero
+  estimate::KnotStore first_knots_;      ///< of the first minutes; shared by all passes of the preparation, and empty after it
   std::optional<estimate::NoiseFit> noise_fit_;
-  std::optional<double> noise_ratio_;  ///< squared innovations over their expectation, where that had the noise fitted
+  std::optional<double> noise_ratio_;  ///< squared innovations over their expectation, if it caused the noise fit
   std::optional<double> velocity_lag_;
-  AntennaChoice tested_;  ///< which the configuration leaves to the data
+  AntennaChoice tested_;  ///< those that the configuration leaves to the data
   Eigen::Vector3d lever_arm_sd_ = Eigen::Vector3d::Zero();
   bool gain_errors_left_out_ = false;
   bool heading_assumed_ = false;

@@ -1,5 +1,5 @@
 #pragma once
-// Artificial outages: how far forward and smoothed solution drift where GNSS is withheld.
+// Artificial outages: drift of the forward and the smoothed solution while GNSS is withheld.
 
 #include <optional>
 #include <vector>
@@ -10,7 +10,7 @@
 
 namespace coast::study {
 
-/// GNSS with start <= t < start + duration is withheld, but for some satellites where the outage is partial.
+/// GNSS with start <= t < start + duration is withheld, except for some satellites if the outage is partial.
 struct Outage {
   geo::GpsTime start;
   double duration_s = 0.0;
@@ -27,22 +27,22 @@ struct OutageErrors {
   Eigen::Vector3d sigma_max_m = Eigen::Vector3d::Zero();  ///< largest one sigma inside the outage
   double horizontal_max_m = 0.0;
   Eigen::Vector3d attitude_max = Eigen::Vector3d::Zero();  ///< rad
-  std::size_t inside_95 = 0;  ///< errors of one axis and epoch within 1.96 sigma, epochs at most ten a second
+  std::size_t inside_95 = 0;  ///< errors of one axis and epoch within 1.96 sigma, at most ten epochs per second
   std::size_t tested = 0;
-  std::optional<double> gnss_horizontal_max_m;  ///< against the withheld fixes, at the antenna
-  std::vector<ErrorSample> series;              ///< for figures, at most ten a second, some seconds around the outage
+  std::optional<double> gnss_horizontal_max_m;  ///< relative to the withheld fixes, at the antenna
+  std::vector<ErrorSample> series;              ///< for figures, at most ten per second, some seconds around the outage
 };
 
 struct OutageResult {
   Outage outage;
   OutageErrors forward;
   std::optional<OutageErrors> smoothed;
-  Manoeuvre manoeuvre = Manoeuvre::kStraight;  ///< flown meanwhile
+  Manoeuvre manoeuvre = Manoeuvre::kStraight;  ///< during the outage
 };
 
-inline constexpr double kMargin = 10.0;  ///< s before and after an outage that its series has, for figures
+inline constexpr double kMargin = 10.0;  ///< s before and after an outage that are included in its series, for figures
 
-/// Gathers the errors of a streamed trajectory inside (and, for figures, around) one outage.
+/// Collects the errors of a streamed trajectory inside (and, for figures, around) one outage.
 class OutageRecorder {
  public:
   /// @param reference must outlive the recorder  @param lever_arm_b from the IMU to the reference's point
@@ -66,7 +66,7 @@ class OutageRecorder {
   std::optional<double> gnss_horizontal_max_m_;
 };
 
-/// The solution without gaps, thinned to ten epochs a second: what outages are measured against where there is no reference.
+/// The solution without outages, thinned to ten epochs per second: the reference for outages if there is no other.
 class GapFreeReference {
  public:
   void add(const record::TrajectoryEpoch& epoch);

@@ -17,44 +17,44 @@ struct Solution {
   std::unique_ptr<estimate::ForwardFilter> filter;
   estimate::FilterResult forward;
   estimate::KnotStore knots;
-  std::vector<estimate::SmoothedKnot> smoothed;  ///< empty without smoother
-  std::optional<estimate::BatchReport> batch;    ///< where the batch made them
+  std::vector<estimate::SmoothedKnot> smoothed;  ///< empty without a smoother
+  std::optional<estimate::BatchReport> batch;    ///< if the batch smoother was used
 };
 
 struct SolutionOutputs {
   record::EpochSink forward;
   record::EpochSink smoothed;
   std::function<void(const estimate::FilterState&)> at_knots;
-  /// Every measurement of the forward pass, and whether it was used; none of carrier phases.
+  /// Every measurement of the forward pass, and whether it was used; not for carrier phases.
   std::function<void(const estimate::Measurement&, bool)> measurements;
-  estimate::KnotSampling states;  ///< smoothed knots that keep their sensor states
+  estimate::KnotSampling states;  ///< smoothed knots for which sensor states are stored
 };
-/// The backward filter's half of a combined solution: a forward pass says where knots are and how it ends, then the backward
-/// filter makes its knots there too. The recordings are turned round for a while.
-/// @param states  knots that keep sensor states
+/// The backward filter of a combined solution: a forward pass gives the times of the knots and the final state, then the
+/// backward filter computes its states at the same knots. The recordings are temporarily reversed.
+/// @param states  knots for which sensor states are stored
 [[nodiscard]] estimate::BackwardKnots backward_knots(PreparedMission& mission, const estimate::FilterOptions& options,
                                                      const estimate::KnotSampling& states, const Progress& progress);
 
-/// @param carried  start that earlier passes left, with their covariance (carried_start). The forward solution begins with it;
-///                 the smoothed one takes its states alone and the uncertainty of the alignment, so that no fix counts twice in
-///                 its sigmas: it costs another forward pass.
-/// @param backward  backward_knots() of the same options: the smoothed solution is the combined one. Null: by the setup. Not
-///                  with `carried`, after which both filters would know the same fixes.
+/// @param carried  start from earlier passes, with their covariance (carried_start). The forward solution begins with it; the
+///                 smoothed one uses only its states, with the uncertainty of the alignment, so that no fix counts twice in its
+///                 sigmas: this needs another forward pass.
+/// @param backward  backward_knots() of the same options: the smoothed solution is the combined one. Null: smoother of the
+///                  setup. Not with `carried`, because both filters would then have used the same fixes.
 [[nodiscard]] Solution solve(const PreparedMission& mission, const estimate::FilterOptions& options, bool smooth,
                              const SolutionOutputs& outputs, const Progress& progress,
                              const std::optional<estimate::FilterState>& carried = {},
                              const estimate::BackwardKnots* backward = nullptr);
 
-/// Multi-pass: forward, backward, ... over the whole mission, each pass beginning with the states and the covariance that the
-/// one before ended with, until one arrives at the start again.
+/// Multi-pass: forward, backward, ... over the whole mission, each pass begins with the final states and covariance of the
+/// previous one, until the start is reached again.
 ///
-/// What it gives: a forward filter that has converged when the mission begins, and a linearisation about a start that the whole
-/// mission knows. What it costs: the covariance carried counts every fix once for each pass.
-/// @param passes  odd, 3 or more; the last, forward one is left to solve()
+/// Advantage: the forward filter has converged when the mission begins, and is linearised about a start estimated from the
+/// whole mission. Disadvantage: the covariance counts every fix once for each pass.
+/// @param passes  odd, 3 or more; the last, forward pass is done by solve()
 [[nodiscard]] estimate::FilterState carried_start(PreparedMission& mission, const estimate::FilterOptions& options, int passes,
                                                   const Progress& progress);
 
-/// Lever arm found by the data when it is left free around the configured one.
+/// Lever arm estimated from the data, with the configured one as prior mean.
 struct LeverArmCheck {
   Eigen::Vector3d difference_m;  ///< estimated minus configured, body axes
   Eigen::Vector3d sd_m;

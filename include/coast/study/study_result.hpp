@@ -1,5 +1,5 @@
 #pragma once
-// What a study of outages ends with: every outage of every error model.
+// Result of a study of outages: every outage of every error model.
 
 #include <string>
 #include <vector>
@@ -9,7 +9,7 @@
 
 namespace coast::study {
 
-/// Outages of one duration, at one or more places of a mission.
+/// Outages of one duration, at one or more times of a mission.
 struct OutageGroup {
   double duration_s = 0.0;
   std::vector<double> starts_s;  ///< since the start of the mission
@@ -20,9 +20,9 @@ struct OutageGroup {
 
 /// One error model on the recordings of one truth, or on the one real recording.
 struct ModelRun {
-  std::string truth;   ///< what the simulated sensors err by; empty: a recording
-  std::string filter;  ///< what the filter believes
-  /// [group]: start by start, within it seed by seed. Series (for figures) are kept of the first outage of a group only.
+  std::string truth;   ///< error model of the simulated sensors; empty: a real recording
+  std::string filter;  ///< error model of the filter
+  /// [group]: start by start, within it seed by seed. Series (for figures) are stored for the first outage of a group only.
   std::vector<std::vector<OutageResult>> outages;
 };
 
@@ -32,8 +32,8 @@ struct StudyResult {
   std::vector<ModelRun> runs;
 };
 
-/// Errors of `second` against those of `first`, outage by outage. Outages of one recording that overlap share what happens in
-/// both: the interval is as wide as that makes it (paired_ratio).
+/// Errors of `second` relative to those of `first`, outage by outage. Overlapping outages of one recording are correlated; the
+/// interval takes this into account (paired_ratio).
 [[nodiscard]] PairedRatio compare(const StudyResult& study, const ModelRun& first, const ModelRun& second, std::size_t group,
                                   DriftMeasure measure, bool smoothed);
 

@@ -1,5 +1,5 @@
 #pragma once
-// The functions that make the catalogue's effects, one file each; private to the room.
+// The functions that create the catalogue's effects, one file each; private to the room.
 
 #include "coast/diagnose/effect.hpp"
 #include "coast/geo/rotation.hpp"
@@ -41,7 +41,7 @@ Effect temperature_rate_hysteresis_gyro();
 Effect vehicle_mounting();
 Effect vibration_rectification();
 
-/// Calls `take(column, response, cause)` for every pair, in the order of nine_pairs(); of six_pairs() where `off_diagonal`.
+/// Calls `take(column, response, cause)` for every pair, in the order of nine_pairs(); of six_pairs() for `off_diagonal`.
 template <typename Take>
 void for_each_pair(bool off_diagonal, const Take& take) {
   Eigen::Index column = 0;

@@ -14,8 +14,8 @@ Effect imu_clock_drift() {
       .source = "Stebler et al. (2011), Time Synchronization",
       .axes = {""},
       .plausible = {1e-4, 1e-4, 1e-4, 1e-4},
-      // In the time of the tags tau = (1 + e) t the body moves as y(tau) = x(t): y' = v (1 - e), y'' = a (1 - 2 e). What is
-      // measured is (a - g) (1 - e), what such a motion asks for y'' - g. Rates shrink like y' and fit, but for the Earth's.
+      // In the time of the tags tau = (1 + e) t the body moves as y(tau) = x(t): y' = v (1 - e), y'' = a (1 - 2 e). Measured
+      // is (a - g) (1 - e), while this motion requires y'' - g. Rates scale as y' and are consistent, except for the Earth's.
       .sensors =
           [](const Signals& s, SensorErrors& error) {
             error.accel.col(0) = s.f + 2.0 * geo::kStandardGravity * (s.C_e_s * s.C_n_e.col(2));

@@ -1,5 +1,5 @@
 #pragma once
-// What a shift of the antenna on the body does to positions and velocities; private to the room.
+// Effect of a shift of the antenna on the body on positions and velocities; private to the room.
 
 #include "effects.hpp"
 

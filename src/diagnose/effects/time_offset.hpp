@@ -1,5 +1,5 @@
 #pragma once
-// What a shift of the GNSS time does to positions and velocities; private to the room.
+// Effect of a shift of the GNSS time on positions and velocities; private to the room.
 
 #include "effects.hpp"
 

@@ -6,7 +6,7 @@ namespace coast::diagnose {
 
 namespace {
 
-// One process for each factor of e in correlation time: equal variances add up to a density of B^2/(2 pi f) where
+// One process per factor of e in correlation time: equal variances add up to a density of B^2/(2 pi f) if
 // sigma^2 = B^2/pi (src/noise/processes/flicker.cpp).
 constexpr double kRatio = 2.718281828459045;
 constexpr double kShortest = 1.0;    // s

@@ -7,9 +7,9 @@ namespace coast::diagnose {
 
 namespace {
 
-/// The step that all values are multiples of; nothing where there is none.
+/// The step of which all values are multiples; none if there is none.
 std::optional<double> step_of(const Eigen::ArrayXd& values) {
-  constexpr double kRounding = 1e-9;  // of the largest value: what files and sums leave
+  constexpr double kRounding = 1e-9;  // of the largest value: rounding of files and sums
   constexpr double kOnGrid = 0.02;    // of a step, rms; uniform would be 0.29
   std::vector<double> sorted(values.begin(), values.end());
   std::ranges::sort(sorted);
@@ -20,7 +20,7 @@ std::optional<double> step_of(const Eigen::ArrayXd& values) {
     if (gap > least && (step == 0.0 || gap < step)) step = gap;
   }
   if (step == 0.0) return {};
-  // A gap is a difference of two roundings: the grid's step is refined by the multiples it implies.
+  // A gap is a difference of two roundings: the grid's step is refined using the integer multiples.
   for (int round = 0; round < 2; ++round) {
     const Eigen::ArrayXd multiples = (values / step).round();
     const double square = multiples.square().sum();
@@ -32,7 +32,7 @@ std::optional<double> step_of(const Eigen::ArrayXd& values) {
 }
 
 std::optional<double> find_step(const AxisSeries& series) {
-  constexpr double kCoarse = 0.5;  // of the white noise of a sample, sd of the rounding
+  constexpr double kCoarse = 0.5;  // of the white noise of a sample: standard deviation of the rounding
   if (series.rounding_stated || series.values.size() < 100) return {};
   const std::optional<double> step = step_of(series.values);
   if (!step || *step / std::sqrt(12.0) < kCoarse * series.white_sd) return {};
@@ -59,7 +59,7 @@ SampleEffect quantisation(Site site) {
       .source = "Widrow & Kollar (2008), section 4",
       .find = find_step,
       .model = add_rounding_noise,
-      // As long as a smooth signal stays within a step, the error is as smooth as the signal.
+      // While a smooth signal stays within a step, the error is as smooth as the signal.
       .residue = [](double step) { return step / std::sqrt(12.0); },
   };
 }

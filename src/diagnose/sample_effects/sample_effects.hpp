@@ -1,5 +1,5 @@
 #pragma once
-// The functions that make the effects of converters, one file each, and what they share; private to the room.
+// The functions that create the effects of converters, one file each, and shared functions; private to the room.
 
 #include "coast/diagnose/correction.hpp"
 #include "coast/diagnose/sample_effect.hpp"
@@ -10,12 +10,12 @@ namespace coast::diagnose {
 SampleEffect quantisation(Site site);
 SampleEffect saturation(Site site);
 
-/// A stretch in which an axis has more white noise than the model says.
+/// A stretch in which an axis has more white noise than in the model.
 struct RaisedNoise {
   geo::GpsTime from, to;
-  double density = 0.0;  ///< in addition, [signal]^2/Hz
+  double density = 0.0;  ///< additional, [signal]^2/Hz
 };
-/// Raises the level of one axis on top of what the recording has. @param stretches  in order, none over another
+/// Raises the noise level of one axis above that of the recording. @param stretches  in order, without overlap
 void raise_noise(MissionInput& input, Site site, int axis, const std::vector<RaisedNoise>& stretches);
 
 [[nodiscard]] inline noise::Sensor sensor_of(Site site) {

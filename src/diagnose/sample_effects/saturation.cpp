@@ -7,10 +7,10 @@ namespace coast::diagnose {
 
 namespace {
 
-constexpr double kEqual = 1e-9;     // of the limit: what files leave
+constexpr double kEqual = 1e-9;     // of the limit: rounding of files
 constexpr Eigen::Index kApart = 8;  // samples
 
-/// Samples [first, last] in a row stand at the limit.
+/// Consecutive samples [first, last] at the limit.
 struct Episode {
   Eigen::Index first, last;
   [[nodiscard]] Eigen::Index length() const { return last - first + 1; }
@@ -29,7 +29,7 @@ std::vector<Episode> episodes(const Eigen::ArrayXd& values, double limit) {
   return result;
 }
 
-/// Whether an extreme is held as no signal with noise holds it: often, in a row, and far oftener than values just below.
+/// Whether an extreme occurs as no noisy signal gives it: often, consecutively, and far more often than values just below.
 bool is_held(const Eigen::ArrayXd& values, double extreme, double white_sd) {
   constexpr Eigen::Index kOften = 5;
   constexpr Eigen::Index kInARow = 3;
@@ -42,7 +42,7 @@ bool is_held(const Eigen::ArrayXd& values, double extreme, double white_sd) {
     longest = std::max(longest, e.length());
   }
   if (count < kOften || longest < kInARow) return false;
-  // Of rounded values the next step is as good as the limit itself.
+  // For rounded values the next step counts as the limit.
   const Eigen::ArrayXd toward = (extreme > 0.0 ? 1.0 : -1.0) * values;
   const double at_limit = std::abs(extreme) * (1.0 - kEqual);
   const double next = (toward < at_limit).select(toward, -std::abs(extreme)).maxCoeff();
@@ -59,7 +59,7 @@ std::optional<double> find_limit(const AxisSeries& series) {
   return {};
 }
 
-/// Slope of the line through some values, a sample, and its variance by what the line leaves.
+/// Slope of the line through some values, per sample, and its variance from the residuals.
 struct Slope {
   double value = 0.0;
   double variance = 0.0;
@@ -74,10 +74,10 @@ Slope slope_of(const Eigen::ArrayXd& values) {
   return {slope, rest / squares};
 }
 
-/// How steeply the limit is reached. @param away  values from the limit on  @param longest  stretch in which the signal is
+/// Slope with which the limit is reached. @param away  values from the limit on  @param longest  stretch in which the signal is
 /// straight
 Slope upward(const Eigen::ArrayXd& away, Eigen::Index longest) {
-  constexpr double kSeen = 5.0;  // sd: as few values as tell the slope, for it to be that at the limit
+  constexpr double kSeen = 5.0;  // sd: the fewest values that give the slope this significance are used
   Slope slope;
   for (Eigen::Index n = kApart;; n *= 2) {
     const bool all = n >= std::min(longest, away.size());
@@ -88,25 +88,25 @@ Slope upward(const Eigen::ArrayXd& away, Eigen::Index longest) {
   return slope;
 }
 
-/// An excursion beyond the limit. On the way up and down noise crosses the limit more than once: episodes close together.
+/// An excursion beyond the limit. Before and after it noise crosses the limit more than once: episodes close together.
 struct Excursion {
   Eigen::Index first, last;
-  Slope up, down;  ///< toward the limit on either side, not below zero
+  Slope up, down;  ///< toward the limit on either side, at least zero
   [[nodiscard]] double steps() const { return static_cast<double>(last - first + 2); }
-  /// The cubic between the samples on either side that goes on with their slopes.
+  /// The cubic between the samples on either side that continues their slopes.
   [[nodiscard]] double height(Eigen::Index i) const {
     const double s = static_cast<double>(i - first + 1) / steps();
     return steps() * (up.value * s * (1.0 - s) * (1.0 - s) + down.value * s * s * (1.0 - s));
   }
   [[nodiscard]] double mean() const { return steps() * (up.value + down.value) / 12.0; }
-  /// Of its mean height: a third that its shape is not this one, and what the slopes are known to.
+  /// Variance of its mean height: a third for its unknown shape, plus that from the slopes.
   [[nodiscard]] double variance() const {
     constexpr double kShape = 0.33;
     return std::pow(kShape * mean(), 2) + std::pow(steps() / 12.0, 2) * (up.variance + down.variance);
   }
 };
 
-/// Where the signal itself crosses the limit: from there to there half of the samples around are held.
+/// From and to the signal's own crossings of the limit: there half of the surrounding samples are at the limit.
 Excursion between_crossings(const Eigen::Array<bool, Eigen::Dynamic, 1>& held, Eigen::Index first, Eigen::Index last) {
   const Eigen::Index reach = std::min(kApart, (last - first + 1) / 4);
   const auto is_beyond = [&](Eigen::Index i) {
@@ -120,7 +120,7 @@ Excursion between_crossings(const Eigen::Array<bool, Eigen::Dynamic, 1>& held, E
   return e;
 }
 
-/// @param toward  values with the sign that makes the limit the upper one
+/// @param toward  values with the sign for which the limit is the upper one
 std::vector<Excursion> excursions(const Eigen::ArrayXd& toward, double limit) {
   const Eigen::Array<bool, Eigen::Dynamic, 1> held = toward >= limit * (1.0 - kEqual);
   std::vector<Episode> together;
@@ -146,7 +146,7 @@ std::vector<Excursion> excursions(const Eigen::ArrayXd& toward, double limit) {
   return result;
 }
 
-/// Beyond the limit the signal is taken for a cubic; what that may be wrong by, all of it together, is added as noise.
+/// Beyond the limit the signal is assumed to be a cubic; its possible error is added as noise.
 void mend(MissionInput& input, Site site, int axis, double limit) {
   const AxisSeries series = axis_series(input, site, axis);
   const Eigen::Vector3d direction_b = input.setup.C_s_b.col(axis);

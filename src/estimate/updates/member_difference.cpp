@@ -13,7 +13,7 @@ const Eigen::Vector3d& mean_of(const Means& means, noise::Sensor sensor) {
   return sensor == noise::Sensor::kGyro ? means.gyro : means.accel;
 }
 
-/// Mean of some members on each axis by how well their white noise lets it be known, with the part that each one has in it.
+/// Mean of some members on each axis, weighted by their white noise, and the weight of each one in it.
 class WeightedMean {
  public:
   WeightedMean(const StateLayout& layout, const record::MemberBlocks::Block& block, noise::Sensor sensor)
@@ -51,9 +51,9 @@ class WeightedMean {
 
 }  // namespace
 
-// z = mean_j - weighted mean of those before j = (e_j + n_j) - sum_i share_i (e_i + n_i), e = H x. Shares go by 1/N_i, the
+// z = mean_j - weighted mean of those before j = (e_j + n_j) - sum_i share_i (e_i + n_i), e = H x. Weights are 1/N_i, the
 // inverse of the white noise; a sum with such weights has the same covariance with each of its parts, so a difference is
-// uncorrelated with the mean in which j has come in, with every other difference, and with the sum of all that the strapdown
+// uncorrelated with the mean that includes j, with every other difference, and with the sum of all that the strapdown
 // integrates.
 std::optional<Linearised> member_difference(const FilterState& state, const StateLayout& layout,
                                             const record::MemberBlocks::Block& block, noise::Sensor sensor, std::size_t j) {
@@ -62,7 +62,7 @@ std::optional<Linearised> member_difference(const FilterState& state, const Stat
   for (std::size_t i = 0; i < j; ++i)
     if (block.means[i]) before.add(i, *block.means[i]);
   if (before.is_empty()) return std::nullopt;
-  const Eigen::Vector3d signal = before.value();  // what scale factors act on
+  const Eigen::Vector3d signal = before.value();  // input of scale factors
   Linearised m;
   m.kind = UpdateKind::kMemberDifference;
   m.H = Eigen::MatrixXd::Zero(3, layout.size());

@@ -138,7 +138,7 @@ class AntexReader {
     return true;
   }
 
-  /// m; empty where a number is missing.
+  /// m; empty if a number is missing.
   static std::vector<double> row_of(std::string_view line, std::size_t columns) {
     constexpr std::size_t kWidth = 8;
     std::vector<double> row;

@@ -36,7 +36,7 @@ double value_at(std::string_view bytes, std::size_t offset, Type type, bool big)
   return number_at<double>(bytes, offset, big);
 }
 
-/// Columns by number, checked against the row.
+/// Columns by number, checked against the row length.
 class BinaryRows {
  public:
   BinaryRows(const ImuFileOptions& options, std::string_view bytes)

@@ -14,7 +14,7 @@ namespace coast::io {
 
 namespace {
 
-/// Text at least up to the end of the first line; zero bytes further on are the reader's to judge, with their line.
+/// Text at least up to the end of the first line; later zero bytes are reported by the reader, with their line.
 bool looks_like_text_table(const FileHead& head) {
   const std::size_t line_end = std::min(head.text.find('\n'), head.text.size());
   return !head.text.empty() && head.text.find('\0') >= line_end;
@@ -29,7 +29,7 @@ std::vector<Column> three_if_present(const TableReader& table, const std::array<
   return {names.begin(), names.end()};
 }
 
-/// The default time columns: time_s, or gps_week and sow_s as our own trajectories have them.
+/// The default time columns: time_s, or gps_week and sow_s as in coast's own trajectories.
 void default_time(const TableReader& table, TimeOptions& time, std::vector<Column>& columns) {
   if (!columns.empty() || time.kind == TimeKind::kRow) return;
   if (!time.kind_given && table.has("gps_week") && table.has("sow_s")) {
@@ -80,7 +80,7 @@ record::Trajectory read_reference_csv(const ReferenceFileOptions& given, Format:
   return read_reference_table(table, o, near);
 }
 
-// A file that is no table at all is told apart from a spoiled one where reading failed.
+// After a read error, a file that is not a table is distinguished from a damaged one.
 record::ImuRecording read_imu_csv(const ImuFileOptions& given, Format::Near near) {
   try {
     return read_imu_columns(given, near);

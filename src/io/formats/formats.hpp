@@ -1,5 +1,5 @@
 #pragma once
-// One function per format file in this folder; src/io/registry.cpp lists them.
+// One function per format file in this folder; they are listed in src/io/registry.cpp.
 
 #include "coast/io/registry.hpp"
 
@@ -13,7 +13,7 @@ namespace coast::io {
 [[nodiscard]] Format csv_format();
 [[nodiscard]] Format binary_format();
 
-/// The head as lines without comments, split at white space, at most `most` rows; empty where a field is no number.
+/// The head as lines without comments, split at white space, at most `most` rows; empty if a field is not a number.
 [[nodiscard]] std::vector<std::vector<double>> numeric_rows(const FileHead& head, std::size_t most);
 
 }  // namespace coast::io

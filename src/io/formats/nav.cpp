@@ -1,5 +1,5 @@
 // `.nav`: week, second of week, latitude, longitude [deg], height [m], v N E D [m/s], roll, pitch, yaw [deg]; white space.
-// Week 0 means "not stated": KF-GINS writes it.
+// Week 0 means "not stated": written by KF-GINS.
 
 #include "../reference_table.hpp"
 #include "formats.hpp"

@@ -37,7 +37,7 @@ class ClockReader {
     throw InputError({lines_.name(), lines_.line_number(), std::move(found), std::move(expected), std::move(what_to_do)});
   }
 
-  /// Version 3.04 has its labels five columns further on, and names of nine characters.
+  /// Version 3.04 has its labels five columns further right, and names of nine characters.
   void read_header() {
     std::string_view line;
     if (!lines_.next(line) || line.find("RINEX VERSION / TYPE") == std::string_view::npos ||

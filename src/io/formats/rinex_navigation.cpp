@@ -27,10 +27,10 @@ struct Message {
   Satellite satellite;
   geo::GpsTime t;
   std::array<double, kLargestMessage> values{};  ///< blank: 0
-  std::size_t lines = 0;                         ///< behind the first
+  std::size_t lines = 0;                         ///< after the first
 };
 
-/// The instant with this second of the week that is nearest to another: the week of the file is not needed, which some programs
+/// The instant with this second of week nearest to another: the week of the file is not used, as some programs
 /// write modulo 1024.
 geo::GpsTime nearest(geo::GpsTime to, double sow) {
   constexpr double kHalfWeek = 302400.0;
@@ -38,7 +38,7 @@ geo::GpsTime nearest(geo::GpsTime to, double sow) {
   return to + off;
 }
 
-/// Of neighbours with the same key the first stays. @return how many went
+/// Of neighbours with the same key the first is kept. @return number of removed ones
 template <class Ephemeris, class Key>
 long drop_repeated(std::vector<Ephemeris>& all, const Key& key) {
   const auto end = std::unique(all.begin(), all.end(), [&](const auto& a, const auto& b) { return key(a) == key(b); });
@@ -47,7 +47,7 @@ long drop_repeated(std::vector<Ephemeris>& all, const Key& key) {
   return count;
 }
 
-/// By satellite and time.  @return how many stood twice
+/// By satellite and time.  @return number of duplicates
 long sort_out(record::NavigationRecording& recording) {
   const auto kepler_key = [](const KeplerEphemeris& e) { return std::tuple(e.satellite, e.toe, e.sources, e.issue, e.toc); };
   std::ranges::stable_sort(recording.kepler, {}, kepler_key);
@@ -120,7 +120,7 @@ void NavigationReader::read_header_line(std::string_view line, std::string_view 
   for (std::size_t i = 0; i < of.size(); ++i) of.at(i) = number_field(line, first + kNumber * i, kNumber).value_or(0.0);
 }
 
-/// RINEX 4 says before each message what it is.
+/// RINEX 4 has a line with the kind of message before each message.
 bool NavigationReader::read_message() {
   std::string_view line;
   do {
@@ -263,7 +263,7 @@ void NavigationReader::keep_kepler(const Message& m) {
   e.health = static_cast<int>(std::clamp(v[24], 0.0, 65535.0));
   e.group_delay = {v[25], v[26]};
   if (m.satellite.system == SatelliteSystem::kGps || m.satellite.system == SatelliteSystem::kQzss)
-    e.group_delay[1] = 0.0;              // there the issue of the clock stands
+    e.group_delay[1] = 0.0;              // this field is the issue of the clock there
   constexpr double kLeastRoot = 2500.0;  // sqrt(m): below the surface
   constexpr double kMostRoot = 8000.0;   // 64 000 km
   constexpr double kWeek = 604800.0;
@@ -291,7 +291,7 @@ void NavigationReader::keep_tabulated(const Message& m) {
     e.channel = static_cast<int>(std::clamp(v[10], -99.0, 300.0));
   else
     e.accuracy_m = v[10];
-  if (e.channel > 128) e.channel -= 256;  // some programs write the byte without its sign
+  if (e.channel > 128) e.channel -= 256;  // some programs write the byte unsigned
   constexpr double kNearest = 7e6;        // m
   constexpr double kFarthest = 6e7;       // m
   constexpr double kFastest = 1e4;        // m/s

@@ -3,12 +3,12 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <map>
 
 #include "../file_kind.hpp"
 #include "../rinex_lines.hpp"
 #include "../text.hpp"
 #include "coast/io/rinex.hpp"
+#include "rinex_columns.hpp"
 
 namespace coast::io {
 
@@ -20,60 +20,6 @@ using record::SatelliteSystem;
 using record::Signal;
 
 constexpr std::size_t kObservationWidth = 16;  // of a number with its two flags
-
-/// What one column of a satellite's record holds.
-struct ObservationType {
-  char quantity = ' ';   ///< 'C', 'L', 'D', 'S'; ' ': nothing that is used
-  std::size_t slot = 0;  ///< index of its signal
-  double factor = 1.0;   ///< that its numbers are stored times
-};
-
-/// What SYS / SCALE FACTOR says of one system: by type, and of the types it does not name.
-struct ScaleFactors {
-  double others = 1.0;
-  std::map<std::string, double> by_type;
-
-  [[nodiscard]] double of(char quantity, Signal signal) const {
-    const auto found = by_type.find({quantity, signal.band, signal.tracking});
-    return found == by_type.end() ? others : found->second;
-  }
-};
-
-/// The columns of one system.
-struct SystemTypes {
-  std::vector<ObservationType> columns;
-  std::vector<Signal> signals;  ///< ascending
-
-  void set(const std::vector<std::pair<char, Signal>>& types, const ScaleFactors& factors) {
-    columns.clear();
-    signals.clear();
-    for (const auto& [quantity, signal] : types)
-      if (quantity != ' ') signals.push_back(signal);
-    std::ranges::sort(signals);
-    signals.erase(std::unique(signals.begin(), signals.end()), signals.end());
-    for (const auto& [quantity, signal] : types)
-      columns.push_back({quantity, static_cast<std::size_t>(std::ranges::lower_bound(signals, signal) - signals.begin()),
-                         factors.of(quantity, signal)});
-  }
-};
-
-bool is_quantity(char c) {
-  return c == 'C' || c == 'L' || c == 'D' || c == 'S';
-}
-
-/// RINEX 2 says the band of a phase, not how it was tracked: as the code that the file has in that band. P is the encrypted
-/// code, tracked without its key, of GPS, and the plain one of GLONASS.
-Signal signal_of_rinex2(char letter, char band, SatelliteSystem system, const std::vector<std::string>& types) {
-  const bool glonass = system == SatelliteSystem::kGlonass;
-  const auto has = [&](char code) { return std::ranges::find(types, std::string{code, band}) != types.end(); };
-  const char precise = glonass ? 'P' : 'W';
-  const char civil = band == '1' || glonass ? 'C' : 'X';
-  if (letter == 'P') return {band, precise};
-  if (letter == 'C') return {band, civil};
-  // The second band of GPS was P(Y) alone for decades; the first has C/A where anything is said of it.
-  const bool prefers_precise = band == '1' ? !has('C') && has('P') : has('P');
-  return {band, prefers_precise ? precise : civil};
-}
 
 class ObservationReader {
  public:
@@ -91,7 +37,7 @@ class ObservationReader {
   }
 
  private:
-  /// Things that were repaired or left out, by kind.
+  /// Repairs and omissions, by kind.
   struct Count {
     long number = 0;
     std::optional<geo::GpsTime> first;
@@ -102,14 +48,7 @@ class ObservationReader {
 
   void read_header();
   void read_header_line(std::string_view line, std::string_view label);
-  void read_types3(std::string_view line);
-  void begin_factor(std::string_view line);
-  void read_factor(std::string_view line);
-  void set_types3(SatelliteSystem system);
-  void read_types2(std::string_view line);
   void read_slots(std::string_view line);
-  void set_types2();
-  void check_header() const;
 
   [[nodiscard]] bool read_epoch();
   [[nodiscard]] std::optional<geo::Calendar> calendar_of(std::string_view line) const;
@@ -128,19 +67,7 @@ class ObservationReader {
   int major_ = 0;
   char system_ = ' ';  ///< of the whole file, 'M' for several
   RinexTime scale_ = RinexTime::kGps;
-  std::array<SystemTypes, 7> types_;
-  std::vector<std::string> types2_;
-  std::size_t announced2_ = 0;
-  char types3_system_ = ' ';
-  std::array<std::vector<std::pair<char, Signal>>, 7> types3_;
-  bool has_types_ = false;
-  /// A record SYS / SCALE FACTOR, which may go on in the next lines.
-  struct {
-    char system = ' ';
-    double factor = 1.0;
-    std::size_t announced = 0, listed = 0;  ///< types; none: all of the system
-  } scaled_;
-  std::array<ScaleFactors, 7> factors_;
+  RinexColumns columns_{lines_};
 
   record::ObservationEpoch epoch_;
   std::optional<Satellite> satellite_;
@@ -159,7 +86,7 @@ void ObservationReader::read_header() {
   while (lines_.next(line)) {
     const std::string_view label = label_of(line);
     if (label == "END OF HEADER") {
-      check_header();
+      columns_.check();
       return;
     }
     read_header_line(line, label);
@@ -179,110 +106,18 @@ void ObservationReader::read_header_line(std::string_view line, std::string_view
   if (label == "ANT # / TYPE") recording_.antenna = trimmed(field(line, 20, 20));
   if (label == "APPROX POSITION XYZ") {
     recording_.approximate_r_e = vector_of(kVector);
-    // Receivers write zeros where they do not know.
+    // Receivers write zeros for unknown values.
     constexpr double kLeast = 6e6;  // m
     if (recording_.approximate_r_e && recording_.approximate_r_e->norm() < kLeast) recording_.approximate_r_e.reset();
   }
   if (label == "ANTENNA: DELTA H/E/N")
     if (const auto delta = vector_of(kVector)) recording_.antenna_offset_enu = {(*delta)(1), (*delta)(2), (*delta)(0)};
-  if (major_ > 2 && label == "SYS / # / OBS TYPES") read_types3(line);
-  if (major_ > 2 && label == "SYS / SCALE FACTOR") read_factor(line);
-  if (major_ == 2 && label == "# / TYPES OF OBSERV") read_types2(line);
+  columns_.read(line, label, major_);
   if (label == "GLONASS SLOT / FRQ #") read_slots(line);
   if (label == "TIME OF FIRST OBS") {
     const std::string_view scale = trimmed(field(line, 48, 3));
     if (scale == "GLO" || (scale.empty() && system_ == 'R')) scale_ = RinexTime::kUtc;
     if (scale == "BDT" || (scale.empty() && system_ == 'C')) scale_ = RinexTime::kBeidou;
-  }
-}
-
-void ObservationReader::read_types3(std::string_view line) {
-  if (line[0] != ' ') {
-    types3_system_ = line[0];
-    if (const auto system = record::system_of(types3_system_)) types3_.at(static_cast<std::size_t>(*system)).clear();
-  }
-  const auto system = record::system_of(types3_system_);
-  if (!system) return;
-  auto& types = types3_.at(static_cast<std::size_t>(*system));
-  constexpr std::size_t kFirst = 7, kStep = 4, kPerLine = 13;
-  for (std::size_t i = 0; i < kPerLine; ++i) {
-    const std::string_view type = trimmed(field(line, kFirst + kStep * i, 3));
-    if (type.empty()) continue;
-    if (type.size() < 2) lines_.refuse(fmt::format("the type {}", in_quotes(type)), "one like C1C");
-    const bool used = type.size() == 3 && is_quantity(type[0]);
-    types.emplace_back(used ? type[0] : ' ', Signal{type[1], type.size() > 2 ? type[2] : 'C'});
-  }
-  has_types_ = true;
-  set_types3(*system);
-}
-
-void ObservationReader::set_types3(SatelliteSystem system) {
-  const auto s = static_cast<std::size_t>(system);
-  types_.at(s).set(types3_.at(s), factors_.at(s));
-}
-
-void ObservationReader::begin_factor(std::string_view line) {
-  const auto factor = integer_field(line, 2, 4);
-  if (!factor || (*factor != 1 && *factor != 10 && *factor != 100 && *factor != 1000))
-    lines_.refuse(fmt::format("the scale factor {}", in_quotes(trimmed(field(line, 2, 4)))), "1, 10, 100 or 1000",
-                  "Stored numbers are divided by it; see the receiver's or the converter's own description.");
-  const bool all = trimmed(field(line, 8, 2)).empty();
-  const auto announced = all ? 0 : integer_field(line, 8, 2);
-  if (!announced || *announced < 0)
-    lines_.refuse(fmt::format("{} types with a scale factor", in_quotes(trimmed(field(line, 8, 2)))),
-                  "their number, or nothing for all of the system");
-  scaled_ = {line[0], static_cast<double>(*factor), static_cast<std::size_t>(*announced), 0};
-  if (scaled_.announced > 0) return;
-  if (const auto system = record::system_of(line[0])) factors_.at(static_cast<std::size_t>(*system)) = {scaled_.factor, {}};
-}
-
-void ObservationReader::read_factor(std::string_view line) {
-  constexpr std::size_t kFirst = 11, kStep = 4, kPerLine = 12;
-  const bool continues = line[0] == ' ';
-  if (continues != (scaled_.listed < scaled_.announced))
-    lines_.refuse(in_quotes(line), continues ? "a system and its scale factor"
-                                             : fmt::format("{} more types of {} with the scale factor before",
-                                                           scaled_.announced - scaled_.listed, scaled_.system));
-  if (!continues) begin_factor(line);
-  const auto system = record::system_of(scaled_.system);
-  for (std::size_t i = 0; i < kPerLine; ++i) {
-    const std::string_view type = trimmed(field(line, kFirst + kStep * i, 3));
-    if (type.empty()) break;
-    if (++scaled_.listed > scaled_.announced)
-      lines_.refuse(fmt::format("more types with a scale factor of {} than announced", scaled_.system),
-                    fmt::format("{}", scaled_.announced));
-    if (system) factors_.at(static_cast<std::size_t>(*system)).by_type[std::string(type)] = scaled_.factor;
-  }
-  if (system) set_types3(*system);
-}
-
-void ObservationReader::read_types2(std::string_view line) {
-  if (const auto announced = integer_field(line, 0, 6)) {
-    announced2_ = static_cast<std::size_t>(std::clamp(*announced, 0, 999));
-    types2_.clear();
-  }
-  constexpr std::size_t kFirst = 10, kStep = 6, kPerLine = 9;
-  for (std::size_t i = 0; i < kPerLine && types2_.size() < announced2_; ++i) {
-    const std::string_view type = trimmed(field(line, kFirst + kStep * i, 2));
-    if (!type.empty()) types2_.emplace_back(type);
-  }
-  has_types_ = true;
-  set_types2();
-}
-
-void ObservationReader::set_types2() {
-  for (std::size_t s = 0; s < types_.size(); ++s) {
-    std::vector<std::pair<char, Signal>> types;
-    for (const std::string& type : types2_) {
-      const char letter = type[0];
-      const char band = type.size() > 1 ? type[1] : '1';
-      const bool known = letter == 'P' || is_quantity(letter);
-      types.emplace_back(!known          ? ' '
-                         : letter == 'P' ? 'C'
-                                         : letter,
-                         signal_of_rinex2(letter, band, static_cast<SatelliteSystem>(s), types2_));
-    }
-    types_[s].set(types, {});
   }
 }
 
@@ -293,17 +128,6 @@ void ObservationReader::read_slots(std::string_view line) {
     const auto channel = integer_field(line, kFirst + kStep * i + 3, 3);
     if (satellite && channel) recording_.glonass_channels[satellite->number] = *channel;
   }
-}
-
-void ObservationReader::check_header() const {
-  if (!has_types_)
-    lines_.refuse("the end of the header", major_ == 2 ? "# / TYPES OF OBSERV" : "SYS / # / OBS TYPES",
-                  "Without it nobody knows what the columns are.");
-  if (scaled_.listed < scaled_.announced)
-    lines_.refuse(fmt::format("{} types with a scale factor of {}", scaled_.listed, scaled_.system),
-                  fmt::format("the {} announced", scaled_.announced));
-  if (major_ == 2 && types2_.size() < announced2_)
-    lines_.refuse(fmt::format("{} types of observations", types2_.size()), fmt::format("the {} announced", announced2_));
 }
 
 std::optional<geo::Calendar> ObservationReader::calendar_of(std::string_view line) const {
@@ -361,7 +185,7 @@ bool ObservationReader::read_records2(const std::vector<std::string>& ids, bool 
   std::string_view line;
   for (const std::string& id : ids) {
     begin_satellite(satellite_field(id, system_ == 'M' ? 'G' : system_));
-    for (std::size_t i = 0; i < types2_.size(); ++i) {
+    for (std::size_t i = 0; i < columns_.of_rinex2(); ++i) {
       if (i % kPerLine == 0 && !lines_.next(line)) return false;
       take(line, kObservationWidth * (i % kPerLine), i);
     }
@@ -381,7 +205,7 @@ bool ObservationReader::read_records3(std::size_t satellites, bool power_failure
     }
     begin_satellite(satellite_field(field(line, 0, 3), system_));
     if (satellite_) {
-      const std::size_t columns = types_.at(static_cast<std::size_t>(satellite_->system)).columns.size();
+      const std::size_t columns = columns_.of(satellite_->system).columns.size();
       for (std::size_t i = 0; i < columns; ++i) take(line, 3 + kObservationWidth * i, i);
     }
     end_satellite(power_failure);
@@ -389,11 +213,11 @@ bool ObservationReader::read_records3(std::size_t satellites, bool power_failure
   return true;
 }
 
-/// Flags 2 to 5 announce lines of a header, 6 cycle slips in the form of observations.
+/// Flags 2 to 5 announce header lines, 6 cycle slips in the form of observations.
 bool ObservationReader::skip_event(char flag, std::size_t lines) {
   count(flag == '6' ? slips_ : events_, std::nullopt);
   constexpr std::size_t kPerLine = 5;
-  if (flag == '6' && major_ == 2) lines *= (types2_.size() + kPerLine - 1) / kPerLine;
+  if (flag == '6' && major_ == 2) lines *= (columns_.of_rinex2() + kPerLine - 1) / kPerLine;
   std::string_view line;
   for (std::size_t i = 0; i < lines; ++i) {
     if (!lines_.next(line)) {
@@ -409,7 +233,7 @@ void ObservationReader::begin_satellite(std::optional<Satellite> satellite) {
   satellite_ = satellite;
   row_.clear();
   if (!satellite) return count(unknown_satellites_, epoch_.t);
-  for (const Signal signal : types_.at(static_cast<std::size_t>(satellite->system)).signals) {
+  for (const Signal signal : columns_.of(satellite->system).signals) {
     Observation& observation = row_.emplace_back();
     observation.satellite = *satellite;
     observation.signal = signal;
@@ -419,7 +243,7 @@ void ObservationReader::begin_satellite(std::optional<Satellite> satellite) {
 void ObservationReader::take(std::string_view line, std::size_t at, std::size_t column) {
   constexpr std::size_t kNumber = 14;
   if (!satellite_) return;
-  const ObservationType type = types_.at(static_cast<std::size_t>(satellite_->system)).columns[column];
+  const ObservationType type = columns_.of(satellite_->system).columns[column];
   if (type.quantity == ' ' || trimmed(field(line, at, kNumber)).empty()) return;
   auto value = number_field(line, at, kNumber);
   if (!value) return count(spoiled_, epoch_.t);

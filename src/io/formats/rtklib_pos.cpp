@@ -1,6 +1,6 @@
-// RTKLIB's solution file in every form that rtkpost, rnx2rtkp and rtkrcv write: times as GPST, UTC or JST, calendar or week and
+// RTKLIB's solution file in all forms written by rtkpost, rnx2rtkp and rtkrcv: times as GPST, UTC or JST, calendar or week and
 // seconds; positions geodetic in degrees or degrees-minutes-seconds, ECEF, or baseline east-north-up; with or without
-// velocities; any field separator. RTKLIB manual 2.4.2, B.1. The header decides.
+// velocities; any field separator. RTKLIB manual 2.4.2, B.1. The header determines the form.
 
 #include <fmt/format.h>
 
@@ -26,7 +26,7 @@ bool contains(std::string_view text, std::string_view part) {
   return text.find(part) != std::string_view::npos;
 }
 
-/// What the header says.
+/// Content of the header.
 struct PosHeader {
   bool found = false;
   std::string scale = "GPST";
@@ -38,7 +38,7 @@ struct PosHeader {
 };
 
 double sexagesimal(double degrees, double minutes, double seconds) {
-  // The sign stands on the degrees alone, also on -0.
+  // Only the degrees have the sign, also for -0.
   return std::copysign(std::abs(degrees) + (minutes + seconds / 60.0) / 60.0, degrees);
 }
 
@@ -143,7 +143,7 @@ class PosReader {
                               sexagesimal(value(r_[3]), value(r_[4]), value(r_[5])), value(r_[6]));
   }
 
-  /// Six signed roots in the axes of the file, from slots that follow one another, to a covariance in N, E, D.
+  /// Six signed roots in the axes of the file, from consecutive slots, to a covariance in N, E, D.
   [[nodiscard]] Eigen::Matrix3d covariance_ned(std::size_t first, const Eigen::Matrix3d& C_n_e, std::string_view what,
                                                std::string_view key) {
     const Eigen::Matrix3d cov = builder_.covariance(
@@ -151,7 +151,7 @@ class PosReader {
         key);
     if (header_.frame == Frame::kEcef) return C_n_e.transpose() * cov * C_n_e;
     if (header_.frame == Frame::kGeodetic) return neu_to_ned(cov);
-    // Baseline columns are east, north, up at the base; at the rover north and down point slightly elsewhere.
+    // Baseline columns are east, north, up at the base; at the rover north and down have slightly different directions.
     Eigen::Matrix3d ned_from_enu;
     ned_from_enu << 0.0, 1.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, -1.0;
     const Eigen::Matrix3d rotation = C_n_e.transpose() * base_->rotation() * ned_from_enu;
@@ -167,7 +167,7 @@ class PosReader {
       return record::GnssFix::Velocity{v_n, builder_.covariance({*options_.velocity_sd}, "velocity", "")};
     const std::size_t sd = (*v_)[3];
     if (value(sd) == 0.0 && value(sd + 1) == 0.0 && value(sd + 2) == 0.0) {
-      // RTKLIB fills these only where it estimates the motion; the position is good without them.
+      // RTKLIB writes these only if it estimates the motion; the position is valid without them.
       builder_.repairs().add("velocity_left_out",
                              "with velocity standard deviations of zero: velocity left out (`velocity_sd_mps` would use it)",
                              1.0, table_.error("velocity standard deviations 0"), std::nullopt);
@@ -186,7 +186,7 @@ class PosReader {
     record::GnssFix fix;
     fix.t = time_->read();
     fix.r_ea_e = position();
-    // Geodetic files state everything in local axes already: no rotation there, and a third of the time.
+    // Geodetic files have all values in local axes already: no rotation needed, which takes a third of the time.
     const Eigen::Matrix3d C_n_e = header_.frame == Frame::kGeodetic ? Eigen::Matrix3d(Eigen::Matrix3d::Identity())
                                                                     : geo::C_n_e(geo::geodetic_from_ecef(fix.r_ea_e));
     fix.position_cov_n = options_.sd ? builder_.covariance({*options_.sd}, "position", "sd_m")
@@ -194,7 +194,7 @@ class PosReader {
     fix.velocity = velocity(C_n_e);
     fix.quality = quality_from(quality);
     fix.satellites = static_cast<int>(std::lround(std::clamp(value(satellites_), 0.0, 999.0)));
-    // Zero stands for "not filled in" here.
+    // Zero means "not set" here.
     if (age_ && value(*age_) != 0.0) fix.age_s = value(*age_);
     if (ratio_ && value(*ratio_) != 0.0) fix.ratio = value(*ratio_);
     builder_.add(fix);
@@ -207,7 +207,7 @@ class PosReader {
   std::optional<TimeColumn> time_;
   std::optional<PositionConverter> position_;
   std::optional<geo::LocalFrame> base_;
-  int next_ = 0;  ///< number of the next column to take
+  int next_ = 0;  ///< index of the next column
   std::vector<std::size_t> r_;
   std::size_t quality_ = 0, satellites_ = 0;
   std::array<std::size_t, 6> sd_{};

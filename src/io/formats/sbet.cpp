@@ -48,7 +48,7 @@ record::NavState state_from(const std::array<double, kFields>& f, double geoid_h
   const Eigen::Matrix3d C_n_e = geo::C_n_e(p);
   state.r_eb_e = geo::ecef_from_geodetic(p);
   state.v_eb_e = C_n_e * Eigen::Vector3d(f[4], f[5], f[6]);
-  // The platform heading counts from the wander frame's x axis, the wander angle takes it back to north.
+  // The platform heading is relative to the wander frame's x axis; the wander angle refers it to north.
   const Eigen::Quaterniond q_b_n = geo::quaternion_from_euler({f[7], f[8], geo::wrap_angle(f[9] - f[10])});
   state.q_b_e = (Eigen::Quaterniond(C_n_e) * q_b_n).normalized();
   return state;
@@ -88,7 +88,7 @@ record::Trajectory read_sbet(const ReferenceFileOptions& options, Format::Near n
         {record::Event::Severity::kWarning, "trailing_garbage",
          fmt::format("{}: the last {} bytes are no whole record; left out", name, bytes.size() % kRecord), std::nullopt, 1});
   if (wander) {
-    // Programs do not agree on the sense of the wander frame's y and z axes, so its velocities are not used.
+    // Programs differ in the sense of the wander frame's y and z axes, so its velocities are not used.
     trajectory.has_velocity = false;
     trajectory.events.push_back(
         {record::Event::Severity::kWarning, "sbet_wander",

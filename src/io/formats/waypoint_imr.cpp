@@ -66,7 +66,7 @@ record::ImuRecording read_imr(const ImuFileOptions& options, Format::Near near) 
   record::ImuRecording recording;
   recording.source = options.file.string();
   const ImrHeader h = parse_header(bytes, recording.source);
-  // Rates become increments of the nominal interval, so that both kinds go one way.
+  // Rates are converted to increments of the nominal interval, so that both kinds are processed alike.
   const double gyro = h.gyro_scale * geo::kDegree / (h.gyro_increments ? 1.0 : h.rate_hz);
   const double accel = h.accel_scale / (h.accel_increments ? 1.0 : h.rate_hz);
   const std::size_t records = (bytes.size() - kHeader) / kRecordBytes;

@@ -1,5 +1,5 @@
 #pragma once
-// A sum of processes as matrices of a size known at compile time: what the passes over a record run on. Private to the room.
+// A sum of processes as matrices of a size known at compile time, for the passes over a record. Private to the room.
 
 #include <Eigen/Core>
 #include <algorithm>
@@ -12,7 +12,7 @@
 
 namespace coast::noise {
 
-/// The few elements of a transition that are not zero: blocks of one or two states. Products cost N for each.
+/// The nonzero elements of a transition: blocks of one or two states. A product costs N operations for each.
 template <int N>
 class SparseTransition {
  public:
@@ -54,7 +54,7 @@ class SparseTransition {
     int col = 0;
     double value = 0.0;
   };
-  static constexpr int kDense = 4;  // up to here a whole product costs less than finding the elements
+  static constexpr int kDense = 4;  // up to this size a full product costs less than finding the elements
 
   Matrix whole_;
   std::array<Element, static_cast<std::size_t>(N) * N> elements_{};
@@ -67,7 +67,7 @@ struct FixedModel {
   using Vector = Eigen::Matrix<double, N, 1>;
   using Row = Eigen::Matrix<double, 1, N>;
 
-  /// States beyond those of the block are there and always zero.
+  /// States beyond those of the block are present and always zero.
   explicit FixedModel(const SampleBlock& block) : white(block.white) {
     const Eigen::Index n = block.h.size();
     Phi.topLeftCorner(n, n) = block.Phi;
@@ -99,14 +99,14 @@ decltype(auto) with_size(Eigen::Index states, const Pass& pass) {
   throw std::invalid_argument("a sum of processes with more than 12 states");
 }
 
-/// Tells when a recursion of covariances has come to rest: states whose innovation variance no longer changes share their gain.
+/// Detects when a covariance recursion is stationary: steps whose innovation variance no longer changes share their gain.
 template <int N>
 class SteadyState {
  public:
   using Matrix = typename FixedModel<N>::Matrix;
-  static constexpr int kStride = 64;  ///< steps between looks
+  static constexpr int kStride = 64;  ///< steps between checks
 
-  /// Relative change since the last look, element by element against the diagonal; from two of them, what is still to come.
+  /// Relative change since the last check, each element relative to the diagonal; two of them give the remaining change.
   [[nodiscard]] bool reached(const Matrix& P) {
     double change = 0.0;
     for (int i = 0; i < N; ++i)

@@ -1,5 +1,5 @@
 #pragma once
-// The covariance side of the filter, step by step until it rests. Private to the room.
+// The covariance recursion of the filter, step by step until it is stationary. Private to the room.
 
 #include "fixed_model.hpp"
 

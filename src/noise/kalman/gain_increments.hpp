@@ -1,5 +1,5 @@
 #pragma once
-// The covariance side of the filter with its derivatives by increments of low rank. Private to the room.
+// The covariance recursion of the filter and its derivatives by increments of low rank. Private to the room.
 
 #include <vector>
 
@@ -7,11 +7,11 @@
 
 namespace coast::noise {
 
-/// Chandrasekhar's recursion (Morf, Sidhu & Kailath 1974). From a start that is stationary but for one state,
+/// Chandrasekhar's recursion (Morf, Sidhu & Kailath 1974). From a start that is stationary except in one state,
 ///
 ///     P[k+1] - P[k] = L[k] M[k] L[k]',   L of two columns,
 ///
-/// for all k: the gain goes on by products of N x 2 where the Riccati recursion has N x N. With Y = h L, w = M Y':
+/// for all k: the gain needs products of N x 2 where the Riccati recursion needs N x N. With Y = h L, w = M Y':
 ///
 ///     P h' <- P h' + L w,   S <- S + Y w,   L <- Phi (L - k Y) with the new k = P h'/S,   M <- M + w w'/S with the old S
 template <int N>
@@ -21,7 +21,7 @@ class GainIncrements {
   using Vector = typename Model::Vector;
   using Slopes = Eigen::Matrix<double, N, Eigen::Dynamic, 0, N, kMostParameters>;
 
-  /// Whether the start is of that kind.
+  /// Whether the start is of this kind.
   [[nodiscard]] static bool apply_to(const Model& model) {
     int moving = 0;
     const Matrix change = first_change(model);
@@ -34,7 +34,7 @@ class GainIncrements {
     return moving <= 1;
   }
 
-  /// @param model, slopes  outlive this
+  /// @param model, slopes  must outlive this
   GainIncrements(const Model& model, const std::vector<Model>& slopes)
       : model_(model), slopes_(slopes), count_(static_cast<Eigen::Index>(slopes.size())), rest_(slopes.size() + 1) {
     PHt_ = model.P_first * model.h.transpose();
@@ -80,10 +80,10 @@ class GainIncrements {
   using Pair = Eigen::Vector2d;
   static std::size_t at(Eigen::Index i) { return static_cast<std::size_t>(i); }
 
-  /// Of P without a measurement; zero for a stationary start.
+  /// Change of P in the first step without a measurement; zero for a stationary start.
   static Matrix first_change(const Model& model) { return model.sparse.congruence(model.P_first) + model.Q - model.P_first; }
   static bool is_rounding(double change, double P_r, double P_c) {
-    constexpr double kRounding = 1e-10;  // what solving for a stationary start leaves
+    constexpr double kRounding = 1e-10;  // error of the stationary start's solution
     return std::abs(change) <= kRounding * std::sqrt(P_r * P_c);
   }
 
@@ -128,7 +128,7 @@ class GainIncrements {
     dM += (dw * w.transpose() + w * dw.transpose()) / S_before - w * w.transpose() * (dS_before / (S_before * S_before));
   }
 
-  /// P is not kept; as if every step since the last look had been like this one.
+  /// P is not kept; its change is approximated as if every step since the last check had been like this one.
   void look() {
     since_look_ = 0;
     const auto stride = static_cast<double>(SteadyState<N>::kStride);
@@ -156,7 +156,7 @@ class GainIncrements {
   Slopes dPHt_;
   std::vector<Columns> dL_;
   std::vector<Eigen::Matrix2d> dM_;
-  std::vector<Matrix> P_;  ///< about what it is, for scale; its derivatives
+  std::vector<Matrix> P_;  ///< approximate P, for scale; its derivatives
   std::vector<SteadyState<N>> rest_;
   int since_look_ = 0;
   bool steady_ = false;

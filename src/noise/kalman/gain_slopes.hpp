@@ -1,5 +1,5 @@
 #pragma once
-// The covariance side of the filter with its derivatives, step by step until both rest. Private to the room.
+// The covariance recursion of the filter and its derivatives, step by step until both are stationary. Private to the room.
 
 #include <optional>
 #include <vector>
@@ -9,7 +9,7 @@
 
 namespace coast::noise {
 
-/// By increments of low rank up to the first hole, where the start allows; by the Riccati recursion otherwise.
+/// By increments of low rank up to the first hole, if the start allows it; else by the Riccati recursion.
 template <int N>
 class GainSlopes {
  public:
@@ -17,7 +17,7 @@ class GainSlopes {
   using Vector = typename Model::Vector;
   using Slopes = Eigen::Matrix<double, N, Eigen::Dynamic, 0, N, kMostParameters>;
 
-  /// @param model  outlives this
+  /// @param model  must outlive this
   GainSlopes(const Model& model, const std::vector<SampleBlock>& derivatives)
       : model_(model), slopes_(derivatives.begin(), derivatives.end()) {
     if (GainIncrements<N>::apply_to(model))

@@ -1,16 +1,20 @@
 #include <cmath>
+#include <type_traits>
 
 #include "gain.hpp"
+#include "gain_increments.hpp"
 #include "passes.hpp"
+#include "stationary_pass.hpp"
 
 namespace coast::noise {
 
 namespace {
 
-template <int N>
+/// @tparam Filter  Gain, or GainIncrements if there is no hole
+template <int N, class Filter>
 class InnovationPass {
  public:
-  explicit InnovationPass(const SampleBlock& block) : model_(block), gain_(model_) {}
+  explicit InnovationPass(const FixedModel<N>& model, Filter& gain) : model_(model), gain_(gain) {}
 
   InnovationSums run(const StaticSignal& signal) {
     const GridTime time(signal);
@@ -30,18 +34,20 @@ class InnovationPass {
   using Columns = Eigen::Matrix<double, N, 3>;
 
   void skip() {
-    states_ = model_.sparse.left(states_);
-    gain_.skip();
+    if constexpr (std::is_same_v<Filter, Gain<N>>) {
+      states_ = model_.sparse.left(states_);
+      gain_.skip();
+    }
   }
   void step(const Eigen::RowVector3d& z) {
-    sums_.positive = gain_.positive();
+    sums_.positive = gain_.S > 0.0 && std::isfinite(gain_.S);
     const Eigen::RowVector3d e = z - model_.h * states_;
     sums_.products.noalias() += e.transpose() * e / gain_.S;
     sums_.log_determinant += std::log(gain_.S);
     states_ = model_.sparse.left(Columns(states_ + gain_.k * e));
     gain_.step();
   }
-  /// The gain rests: a <- A a + b z with constant A = Phi (I - k h), b = Phi k.
+  /// The gain is constant: a <- A a + b z with A = Phi (I - k h), b = Phi k.
   void rest_of_run(std::span<const double> values, double tau, double tau_step) {
     const typename FixedModel<N>::Matrix A = model_.Phi * (FixedModel<N>::Matrix::Identity() - gain_.k * model_.h);
     const typename FixedModel<N>::Vector b = model_.Phi * gain_.k;
@@ -59,15 +65,28 @@ class InnovationPass {
     sums_.log_determinant += static_cast<double>(values.size()) * std::log(gain_.S);
   }
 
-  FixedModel<N> model_;
-  Gain<N> gain_;
+  const FixedModel<N>& model_;
+  Filter& gain_;
   Columns states_ = Columns::Zero();
   InnovationSums sums_;
 };
 
+/// Increments do not keep P, which a hole needs; without holes they make a sum of slow processes fast.
+template <int N>
+InnovationSums innovations_of(const SampleBlock& block, const StaticSignal& signal) {
+  const FixedModel<N> model(block);
+  if (signal.values.size() == signal.length() && GainIncrements<N>::apply_to(model)) {
+    const std::vector<FixedModel<N>> no_slopes;
+    GainIncrements<N> gain(model, no_slopes);
+    return InnovationPass<N, GainIncrements<N>>(model, gain).run(signal);
+  }
+  Gain<N> gain(model);
+  return InnovationPass<N, Gain<N>>(model, gain).run(signal);
+}
+
 template <int N>
 std::vector<double> whiten(const SampleBlock& block, const StaticSignal& signal, const MeanCurve& mean, double gate) {
-  constexpr int kPatience = 20;  // refused in a row: then it is the filter that is wrong
+  constexpr int kPatience = 20;  // rejected in a row: then the filter is wrong
   int refused = 0;
   const FixedModel<N> model(block);
   Gain<N> gain(model);
@@ -100,7 +119,8 @@ std::vector<double> whiten(const SampleBlock& block, const StaticSignal& signal,
 }  // namespace
 
 InnovationSums innovation_pass(const SampleBlock& block, const StaticSignal& signal) {
-  return with_size(block.h.size(), [&](auto size) { return InnovationPass<size()>(block).run(signal); });
+  if (const std::optional<InnovationSums> sums = stationary_innovations(block, signal)) return *sums;
+  return with_size(block.h.size(), [&](auto size) { return innovations_of<size()>(block, signal); });
 }
 
 std::vector<double> whitening_pass(const SampleBlock& block, const StaticSignal& signal, const MeanCurve& mean, double gate) {

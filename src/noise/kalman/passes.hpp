@@ -13,7 +13,7 @@ struct MeanCurve {
   double level = 0.0;
   double drift = 0.0;
 };
-/// tau of a grid index.
+/// tau at a grid index.
 class GridTime {
  public:
   explicit GridTime(const StaticSignal& signal)
@@ -26,11 +26,11 @@ class GridTime {
   double half_;
 };
 
-/// Innovations of three columns at once: the signal, 1 and tau. Linear in the signal, so that of any level and drift follows.
+/// Innovations of three columns at once: the signal, 1 and tau. They are linear: those of any level and drift follow.
 struct InnovationSums {
   Eigen::Matrix3d products = Eigen::Matrix3d::Zero();  ///< sum e_i e_j / S
   double log_determinant = 0.0;                        ///< sum log S
-  bool positive = true;                                ///< false: an innovation variance was not
+  bool positive = true;                                ///< false: an innovation variance was not positive
 };
 [[nodiscard]] InnovationSums innovation_pass(const SampleBlock& block, const StaticSignal& signal);
 
@@ -44,16 +44,16 @@ struct ScoreSums {
 [[nodiscard]] ScoreSums score_pass(const SampleBlock& block, const std::vector<SampleBlock>& derivatives,
                                    const StaticSignal& signal, const MeanCurve& mean);
 
-/// Memory of the smoother, to be used again: of a long record it costs as much to get as to fill.
+/// Reused memory of the smoother: for a long record allocating it costs as much as filling it.
 struct SmootherScratch {
   std::vector<double> steps;
 };
-/// Second moments of all states given the signal, as BlockMoments of the whole state.
-/// @param doubt  curves whose coefficients are independent normal deviates: what is not known of the mean
+/// Second moments of all states given the signal, as BlockMoments of the full state.
+/// @param doubt  curves with independent standard normal coefficients: the uncertainty of the mean
 [[nodiscard]] BlockMoments moment_pass(const SampleBlock& block, const StaticSignal& signal, const MeanCurve& mean,
                                        const std::vector<MeanCurve>& doubt, SmootherScratch& scratch);
 
-/// e/sqrt(S), in the order of the values. What lies outside the gate is not believed, so that its neighbours do not look wrong.
+/// e/sqrt(S), in the order of the values. Values outside the gate are not used, so that their neighbours do not look wrong.
 [[nodiscard]] std::vector<double> whitening_pass(const SampleBlock& block, const StaticSignal& signal, const MeanCurve& mean,
                                                  double gate);
 

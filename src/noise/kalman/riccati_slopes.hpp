@@ -1,5 +1,5 @@
 #pragma once
-// The covariance side of the filter with its derivatives by the Riccati recursion. Private to the room.
+// The covariance recursion of the filter and its derivatives by the Riccati recursion. Private to the room.
 
 #include <vector>
 
@@ -15,7 +15,7 @@ class RiccatiSlopes {
   using Matrix = typename Model::Matrix;
   using Slopes = Eigen::Matrix<double, N, Eigen::Dynamic, 0, N, kMostParameters>;
 
-  /// @param model, slopes  outlive this
+  /// @param model, slopes  must outlive this
   RiccatiSlopes(const Model& model, const std::vector<Model>& slopes)
       : gain(model), model_(model), slopes_(slopes), count_(static_cast<Eigen::Index>(slopes.size())), rest_(slopes.size()) {
     for (const Model& slope : slopes) dP_.push_back(slope.P_first);
@@ -70,13 +70,13 @@ class RiccatiSlopes {
     if (!slope.sparse.empty()) next += 2.0 * slope.sparse.right(right.transpose());
     dP_[at(i)] = 0.5 * (next + next.transpose()) + slope.Q;
   }
-  /// At rest are filter and derivatives, or neither.
+  /// Filter and derivatives become stationary together.
   void look() {
     if (++since_look_ < SteadyState<N>::kStride) return;
     since_look_ = 0;
     bool all = gain.steady();
     for (std::size_t i = 0; i < rest_.size(); ++i) {
-      // Measured against P itself: the derivatives are with respect to logarithms.
+      // Relative to P itself: the derivatives are with respect to logarithms.
       all = rest_[i].reached(gain.P + dP_[i]) && all;
     }
     steady_ = all;

@@ -8,7 +8,7 @@ namespace coast::noise {
 
 namespace {
 
-/// The filter of the columns 1 and tau with its derivatives, for the products of their innovations alone:
+/// The filter of the columns 1 and tau with its derivatives, only for the products of their innovations:
 ///
 ///     d(e_c e_d / S) = (de_c e_d + e_c de_d)/S - e_c e_d dS/S^2
 template <int N>
@@ -36,7 +36,7 @@ class MeanColumns {
     }
     state_ = model_.sparse.left(updated);
   }
-  /// Where the gains rest. A filter at rest follows a ramp by a ramp: once second differences are gone, the rest is summed.
+  /// With constant gains. A stationary filter follows a ramp by a ramp: once second differences vanish, the rest is summed.
   void rest(std::size_t count, double tau, double tau_step, const GainSlopes<N>& gains) {
     const auto tau_at = [&](std::size_t i) { return tau + static_cast<double>(i) * tau_step; };
     std::size_t done = 0;
@@ -60,7 +60,7 @@ class MeanColumns {
  private:
   using Columns = Eigen::Matrix<double, N, 2>;
   static constexpr std::size_t kStride = 64;
-  static constexpr double kStraight = 1e-12;  // against columns of size 1
+  static constexpr double kStraight = 1e-12;  // relative to columns of size 1
 
   [[nodiscard]] Columns advanced(std::size_t i, const Columns& slope, const Columns& updated,
                                  const GainSlopes<N>& gains) const {
@@ -69,7 +69,7 @@ class MeanColumns {
     if (!gains.dPhi(at).empty()) next += gains.dPhi(at).left(updated);
     return next;
   }
-  /// Rows: of the columns, then their derivatives.
+  /// Rows: the columns, then their derivatives.
   [[nodiscard]] Eigen::MatrixXd innovations(double tau) const {
     Eigen::MatrixXd e(static_cast<Eigen::Index>(slopes_.size()) + 1, 2);
     e.row(0) = Eigen::RowVector2d(1.0, tau) - model_.h * state_;
@@ -81,7 +81,7 @@ class MeanColumns {
     all.insert(all.end(), slopes_.begin(), slopes_.end());
     return all;
   }
-  /// `count` steps at once: innovations from `start` on, changing by `change` each. @param before  states a stride ago
+  /// `count` steps at once: innovations from `start` on, each changing by `change`. @param before  states one stride earlier
   void leap(std::size_t count, const Eigen::MatrixXd& start, const Eigen::MatrixXd& change, const std::vector<Columns>& before,
             const GainSlopes<N>& gains) {
     const auto n = static_cast<double>(count);
@@ -109,7 +109,7 @@ class MeanColumns {
   std::vector<Eigen::Matrix2d> products_;
 };
 
-/// Filter and its derivatives side by side. With a_upd = a + k e:
+/// Filter and its derivatives together. With a_upd = a + k e:
 ///
 ///     de = -h da,    d a' = Phi (da + k de + dk e) + dPhi a_upd
 template <int N>

@@ -12,7 +12,7 @@ namespace {
 ///     r <- h' e/S + L' r,    N <- h'h/S + L' N L,    L = Phi (I - k h)
 ///     x_smooth = a + P r,    V = P - P N P,    Cov(x[k+1], x[k]) = (I - P[k+1] N[k]) L P
 ///
-/// Gains that rest are stored once, and where N rests too the covariances are not computed again.
+/// Constant gains are stored once, and if N is constant too the covariances are not computed again.
 template <int N>
 class SmootherPass {
  public:
@@ -22,7 +22,7 @@ class SmootherPass {
 
   SmootherPass(const SampleBlock& block, SmootherScratch& scratch) : model_(block), steps_(scratch.steps) {}
 
-  /// @param share  of the signal: 0 smooths minus the mean alone
+  /// @param share  of the signal: 0 smooths only minus the mean
   void forward(const StaticSignal& signal, const MeanCurve& mean, double share = 1.0) {
     const GridTime time(signal);
     Gain<N> gain(model_);
@@ -107,7 +107,7 @@ class SmootherPass {
  private:
   static constexpr std::size_t kPerStep = N + 1;  ///< predicted state, innovation
 
-  /// What holds from a grid index on.
+  /// Valid from a grid index on.
   struct Stored {
     std::uint64_t from = 0;
     bool observed = true;
@@ -168,7 +168,7 @@ BlockMoments moments(const SampleBlock& block, const StaticSignal& signal, const
   pass.forward(signal, mean);
   MomentSums<N> sums{pass.steps(), pass.model().h};
   pass.backward(sums);
-  // The smoother is linear: what it makes of a curve adds to the second moments as the curve's coefficient varies.
+  // The smoother is linear: its output for a curve adds to the second moments with the variance of the curve's coefficient.
   sums.with_covariances = false;
   for (const MeanCurve& curve : doubt) {
     pass.forward(signal, curve, 0.0);
@@ -189,7 +189,7 @@ BlockMoments moments(const SampleBlock& block, const StaticSignal& signal, const
   return result;
 }
 
-/// Every `stride`-th smoothed output. A variance that rests is noted at the first of its steps and spread afterwards.
+/// Every `stride`-th smoothed output. A constant variance is stored at the first of its steps and distributed afterwards.
 template <int N>
 struct OutputCollector {
   using Matrix = typename FixedModel<N>::Matrix;

@@ -28,12 +28,12 @@ struct ArParameters {
 ///
 ///     x[k] = a1 x[k-1] + ... + ap x[k-p] + e[k]            Box & Jenkins (1976) sec. 3.2
 ///
-/// The filter asks for other intervals than whole samples. No power of the companion matrix serves for p > 1: its driving noise
+/// The filter also needs fractions of the sample interval. Powers of the companion matrix do not serve for p > 1: its noise
 /// has rank one over one step, and a continuous driving noise that leaves rank one over a step cannot excite p states. So the
-/// states are those of the process in continuous time whose autocovariance at whole samples is that of the series, exact for
-/// any interval; for p = 1 and 0 < a1 < 1 that is Gauss and Markov's. Where there is no such process (a pole that is not right
-/// of zero, an oscillation of a few samples) they are the companion's, and an interval is taken for the nearest number of whole
-/// steps.
+/// states are those of the continuous-time process whose autocovariance at integer lags is that of the series, exact for
+/// any interval; for p = 1 and 0 < a1 < 1 that is the Gauss-Markov process. If there is no such process (a pole that is not
+/// right of zero, an oscillation of a few samples) they are the companion's, and an interval is rounded to the nearest number
+/// of steps.
 class Ar final : public Process {
  public:
   Ar(const ArParameters& parameters, std::string_view unit)
@@ -77,15 +77,15 @@ class Ar final : public Process {
     const double gain = p_.innovation_sigma / (1.0 - p_.coefficients.sum());
     return geo::Psd{gain * gain / p_.rate_hz};
   }
-  /// Of means over whole samples, exactly. Between, the variance is interpolated linearly; below one sample it falls to zero
-  /// with tau, as for any signal that is held.
+  /// Exact for means over an integer number of samples. Between, the variance is interpolated linearly; below one sample it
+  /// decreases to zero with tau, as for any signal that is held.
   [[nodiscard]] std::optional<double> allan_variance(double tau) const override {
     return interpolated(tau, &Autoregression::allan_variance);
   }
   [[nodiscard]] std::optional<double> hadamard_variance(double tau) const override {
     return interpolated(tau, &Autoregression::hadamard_variance);
   }
-  /// Poles r exp(+-i w) with 0 > log r > -w/2: a band of half power about w/(2 pi dt), -log r/(pi dt) wide.
+  /// Poles r exp(+-i w) with 0 > log r > -w/2: a band about w/(2 pi dt) with half-power width -log r/(pi dt).
   [[nodiscard]] std::string in_words() const override {
     std::string bands;
     for (const std::complex<double>& pole : Autoregression::poles(p_.coefficients)) {
@@ -132,7 +132,7 @@ std::vector<ProcessPtr> make_ar(const config::Node& entry, const EntryContext& c
   ArParameters parameters;
   parameters.coefficients = Eigen::Map<const Eigen::VectorXd>(coefficients.data(), std::ssize(coefficients));
   const double pole = Autoregression::largest_pole(parameters.coefficients);
-  constexpr double kStationary = 1.0 - 1e-12;  // nearer to 1 rounding decides
+  constexpr double kStationary = 1.0 - 1e-12;  // closer to 1 the result depends on rounding
   if (!(pole < kStationary))
     throw list.error(
         fmt::format("a series that is not stationary: its largest pole has the modulus {:.6g}", pole),
@@ -160,7 +160,7 @@ MatrixXd lyapunov(const MatrixXd& A, const MatrixXd& W) {
   return 0.5 * (X + X.transpose());
 }
 
-/// Coefficients of given partial autocorrelations, and their derivatives (Levinson & Durbin; Barndorff-Nielsen & Schou 1973):
+/// Coefficients from given partial autocorrelations, and their derivatives (Levinson & Durbin; Barndorff-Nielsen & Schou 1973):
 /// stationary for any partial autocorrelations inside (-1, 1).
 struct Coefficients {
   VectorXd a;
@@ -182,7 +182,7 @@ Coefficients from_partial(const VectorXd& partial) {
   return now;
 }
 
-/// The way back; nothing where the series is not stationary.
+/// The inverse; none if the series is not stationary.
 std::optional<VectorXd> to_partial(VectorXd a) {
   VectorXd partial(a.size());
   for (Index k = a.size() - 1; k >= 0; --k) {
@@ -209,7 +209,7 @@ class EstimableAr final : public Estimable {
     return all;
   }
   [[nodiscard]] Index states() const override { return order_; }
-  /// As white noise of the same density at frequency zero: what is left out falls with the length of a block.
+  /// As white noise of the same density at zero frequency: the neglected part decreases with the length of a block.
   [[nodiscard]] bool has_averages() const override { return true; }
   [[nodiscard]] std::vector<Interval> ranges(const SignalScale& scale) const override {
     constexpr double kNearOne = 9.0;  // tanh 9 is 3e-8 from 1
@@ -284,8 +284,8 @@ class EstimableAr final : public Estimable {
   std::string symbol_;
 };
 
-/// Regression of the expected transitions is the maximum but for the stationary start; from there, or from where it was, a
-/// search over the few parameters with the start in.
+/// The maximum is the regression of the expected transitions, except for the stationary start; from there, or from the previous
+/// values, a search over the few parameters includes the start.
 void EstimableAr::maximise(const BlockMoments& m, double, const std::vector<bool>& fixed, std::span<double> u) const {
   const std::vector<double> from(u.begin(), u.end());
   std::vector<double> start = from;
@@ -296,7 +296,7 @@ void EstimableAr::maximise(const BlockMoments& m, double, const std::vector<bool
     if (!fixed[i]) start[i] = i + 1 < start.size() ? std::atanh((*partial)(static_cast<Index>(i))) : std::log(variance);
   if (!(expected(m, start) > expected(m, from))) start = from;
   std::vector<Interval> box;
-  constexpr double kReach = 1.0;  // from the start; the next M-step goes on
+  constexpr double kReach = 1.0;  // from the start; the next M-step continues
   for (std::size_t i = 0; i < start.size(); ++i)
     box.push_back(fixed[i] ? Interval{start[i], start[i]} : Interval{start[i] - kReach, start[i] + kReach});
   constexpr double kStep = 1e-5;

@@ -20,7 +20,7 @@ struct Numbers {
   Complex phi_m, to_mean, q_state, q_cross, q_mean, first_cross, first_mean;
 };
 
-// Sums over j = 1..m of geometric series. Where m b is small their closed forms lose digits like 1/(m b)^2, and the process is
+// Sums over j = 1..m of geometric series. If m b is small their closed forms lose digits as 1/(m b)^2, and the process is
 // a random walk within a block to that order.
 Numbers numbers(Complex b, double m) {
   const Complex lost = -exp_minus_one(-b);        // 1 - phi
@@ -60,12 +60,23 @@ SampleBlock block_of(const Numbers& n, const Part& part) {
 }  // namespace
 
 AveragedBlock averaged_gauss_markov(double b, std::size_t m) {
-  constexpr double kStep = 1e-30;  // complex step: the derivative to the last digit
+  constexpr double kStep = 1e-30;  // complex step: the derivative to full precision
   const Numbers n = numbers(Complex(b, b * kStep), static_cast<double>(m));
   AveragedBlock block{block_of(n, [](Complex z) { return z.real(); }),
                       block_of(n, [&](Complex z) { return z.imag() / kStep; })};
   block.value.h(1) = 1.0;
   return block;
+}
+
+AveragedVariances averaged_variances(double b, std::size_t m) {
+  constexpr double kApart = 12.0;  // correlation times: `common` and `alone` cancel to exp(-12)
+  const auto samples = static_cast<double>(m);
+  const double variance = numbers(Complex(b), samples).first_mean.real();
+  const double length = samples * b;
+  if (length > kApart) return {0.0, variance};
+  // The sums of phi^j and of phi^-j over a block.
+  const double common = std::expm1(-length) / std::expm1(-b) * (std::expm1(length) / std::expm1(b)) / (samples * samples);
+  return {common, variance - common};
 }
 
 SampleBlock averaged_random_walk(std::size_t samples) {

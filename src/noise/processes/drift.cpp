@@ -8,7 +8,7 @@ namespace coast::noise {
 
 namespace {
 
-/// error = slope (t - start), the slope known: a mean without variance, which no measurement changes.
+/// error = slope (t - start), the slope known: a mean without variance, not changed by measurements.
 class Drift final : public LinearRamp {
  public:
   Drift(double slope, std::string_view unit) : slope_(slope), unit_(unit) {}

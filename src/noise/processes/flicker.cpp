@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "entry.hpp"
+#include "processes/block_averages.hpp"
 #include "processes/estimables.hpp"
 #include "processes/processes.hpp"
 
@@ -19,17 +20,17 @@ struct FlickerParameters {
 /// Bias instability as a sum of Gauss-Markov processes.
 ///
 /// IEEE Std 952-1997 annex C: two-sided density B^2/(2 pi f) within a band, Allan variance (2 ln 2/pi) B^2. One process has the
-/// density 2 sigma^2 T/(1 + (omega T)^2); correlation times T at a constant ratio exp(d), without end, add up to
+/// density 2 sigma^2 T/(1 + (omega T)^2); an infinite series of correlation times T at a constant ratio exp(d) adds up to
 ///
 ///     sum_j 2 sigma^2 T_j/(1 + (omega T_j)^2) = sigma^2/(2 d f) (1 + 2 sech(pi^2/d) cos(2 pi ln(omega T_0)/d) + ...)
 ///
-/// (Poisson's summation of sech), so sigma^2 = B^2 d/pi, and for d up to ln(10)/1.5 the ripple is 0.64 % of the density. What
-/// lies beyond the ends is seen from within the band by its leading term, 2 sigma^2 T or 2 sigma^2/(omega^2 T): a geometric
-/// series, which the two processes at the ends carry along with a variance that is larger by 1/(1 - exp(-d)).
+/// (Poisson's summation of sech), so sigma^2 = B^2 d/pi, and for d up to ln(10)/1.5 the ripple is 0.64 % of the density. The
+/// processes beyond the ends act within the band by their leading term, 2 sigma^2 T or 2 sigma^2/(omega^2 T): a geometric
+/// series, included by a variance of the two processes at the ends that is larger by 1/(1 - exp(-d)).
 class Flicker final : public Process {
  public:
   Flicker(const FlickerParameters& parameters, std::string_view unit) : p_(parameters), unit_(unit) {
-    // How far the ends lie outside keeps the Allan variance within 1 % of the floor (tests/noise/flicker_test.cpp).
+    // With this extension of the ends the Allan variance is within 1 % of the floor (tests/noise/flicker_test.cpp).
     constexpr double kBelow = 10.0, kAbove = 4.0, kPerDecade = 1.5;
     const double first = p_.shortest / kBelow, last = p_.longest * kAbove;
     const double span = std::log(last / first);
@@ -38,12 +39,15 @@ class Flicker final : public Process {
     const double variance = p_.coefficient * p_.coefficient * d / geo::kPi;
     for (int i = 0; i < count; ++i) {
       const double share = i == 0 || i == count - 1 ? -1.0 / std::expm1(-d) : 1.0;
-      terms_.push_back(make_gauss_markov(
-          {.name = "flicker", .sigma = std::sqrt(share * variance), .beta = std::exp(-d * i) / first, .unit = unit_}));
+      rates_.push_back(std::exp(-d * i) / first);
+      terms_.push_back(
+          make_gauss_markov({.name = "flicker", .sigma = std::sqrt(share * variance), .beta = rates_.back(), .unit = unit_}));
     }
   }
   [[nodiscard]] std::string_view name() const override { return "flicker"; }
   [[nodiscard]] int states() const override { return static_cast<int>(terms_.size()); }
+  /// beta of one process, 1/s.
+  [[nodiscard]] double rate(Eigen::Index i) const { return rates_[static_cast<std::size_t>(i)]; }
   void transition(double dt, Eigen::Ref<Eigen::MatrixXd> Phi) const override {
     Phi.setZero();
     for (int i = 0; i < states(); ++i) term(i).transition(dt, Phi.block(i, i, 1, 1));
@@ -57,7 +61,7 @@ class Flicker final : public Process {
     P.setZero();
     for (int i = 0; i < states(); ++i) term(i).initial_covariance(P.block(i, i, 1, 1));
   }
-  /// Of the sum, not of ideal flicker noise: they agree within the band.
+  /// For the sum, not for ideal flicker noise: they agree within the band.
   [[nodiscard]] std::optional<double> allan_variance(double tau) const override {
     double sum = 0.0;
     for (const ProcessPtr& process : terms_) sum += process->allan_variance(tau).value_or(0.0);
@@ -80,9 +84,10 @@ class Flicker final : public Process {
   FlickerParameters p_;
   std::string_view unit_;
   std::vector<ProcessPtr> terms_;
+  std::vector<double> rates_;
 };
 
-// Below ten seconds white noise hides the floor of every sensor that we have seen; above hours few recordings tell.
+// Below ten seconds white noise hides the floor of all sensors seen so far; above hours few recordings have information.
 constexpr double kShortestTime = 10.0, kLongestTime = 1e4;
 
 /// u = log B^2 [signal]^2, over the default band: one factor on all variances.
@@ -93,18 +98,20 @@ class EstimableFlicker final : public Estimable {
   [[nodiscard]] std::string_view symbol() const override { return "BI"; }
   [[nodiscard]] std::vector<ParameterInfo> parameters() const override { return {{"coefficient2", "signal^2"}}; }
   [[nodiscard]] Eigen::Index states() const override { return unit_.states(); }
-  [[nodiscard]] bool has_averages() const override { return false; }
   [[nodiscard]] std::vector<Interval> ranges(const SignalScale& scale) const override {
     return {log_variance_range(scale.variance)};
   }
+  /// Means of samples need one state per process as well, so that it can be combined with others (block_averages.hpp).
   [[nodiscard]] SampleBlock block(std::span<const double> u, const SampleStep& step) const override {
     SampleBlock block = SampleBlock::zero(states());
-    unit_.transition(step.interval, block.Phi);
-    unit_.driving_noise(step.interval, block.Q);
+    unit_.transition(step.duration(), block.Phi);
+    unit_.driving_noise(step.duration(), block.Q);
     unit_.initial_covariance(block.P_first);
     block.h.setOnes();
+    if (step.averaged > 1) average(step, block);
     block.Q *= std::exp(u[0]);
     block.P_first *= std::exp(u[0]);
+    block.white *= std::exp(u[0]);
     return block;
   }
   [[nodiscard]] std::vector<SampleBlock> derivatives(std::span<const double> u, const SampleStep& step) const override {
@@ -128,6 +135,15 @@ class EstimableFlicker final : public Estimable {
   }
 
  private:
+  void average(const SampleStep& step, SampleBlock& block) const {
+    for (Eigen::Index i = 0; i < states(); ++i) {
+      const AveragedVariances means = averaged_variances(unit_.rate(i) * step.interval, step.averaged);
+      block.white += means.alone * block.P_first(i, i);
+      block.Q(i, i) *= means.common;
+      block.P_first(i, i) *= means.common;
+    }
+  }
+
   Flicker unit_;
 };
 

@@ -12,8 +12,8 @@ namespace coast::noise {
 
 namespace {
 
-/// sum over n >= 3 of (-u)^n/n! (a - b 2^n + c 3^n), whose terms below n = 3 cancel: what is left of a combination of
-/// exponentials and a polynomial where u is small. For u <= 0.5 the terms left out are below rounding.
+/// sum over n >= 3 of (-u)^n/n! (a - b 2^n + c 3^n): a combination of exponentials and a polynomial whose terms below n = 3
+/// cancel, for small u. For u <= 0.5 the terms left out are below rounding.
 double left_of_exponentials(double a, double b, double c, double u) {
   double sum = 0.0;
   double power = 0.5 * u * u;  // (-u)^n/n!
@@ -39,8 +39,8 @@ class GaussMarkov : public ScalarProcess {
   [[nodiscard]] std::string_view name() const override { return p_.name; }
   [[nodiscard]] Input input() const override { return p_.input; }
   /// With u = beta tau: sigma^2/u^2 (2u - 3 + 4 exp(-u) - exp(-2u)); IEEE Std 952-1997 annex C, exponentially correlated
-  /// noise, in another arrangement. The
-  /// Hadamard variance has the variance V of the integral over tau, 2 tau and 3 tau in (15 V1 - 6 V2 + V3)/(6 tau^2).
+  /// noise, rearranged. The Hadamard variance is (15 V1 - 6 V2 + V3)/(6 tau^2), with V the variance of the integral over tau,
+  /// 2 tau and 3 tau.
   [[nodiscard]] std::optional<double> allan_variance(double tau) const override {
     if (p_.input != Input::kOne) return {};
     const double u = p_.beta * tau;
@@ -72,7 +72,7 @@ class GaussMarkov : public ScalarProcess {
   GaussMarkovParameters p_;
 };
 
-/// Other intervals are as many steps of the model's rate: an exact process of another beta and sigma.
+/// Other intervals are multiples of the model's step: an exact process of another beta and sigma.
 GaussMarkovParameters exact_equivalent(const GaussMarkovParameters& stated, FirstOrderForm form, double rate_hz) {
   const GaussMarkovValues values = noise::exact_equivalent({stated.beta, stated.sigma * stated.sigma}, form, 1.0 / rate_hz);
   GaussMarkovParameters exact = stated;
@@ -131,7 +131,7 @@ SampleBlock scaled(SampleBlock block, double log_variance) {
   return block;
 }
 
-/// u = log beta [1/s], log sigma^2 [signal]^2, discretised exactly, starting stationary.
+/// u = log beta [1/s], log sigma^2 [signal]^2, discretised exactly, with a stationary start.
 class EstimableGaussMarkov final : public Estimable {
  public:
   [[nodiscard]] std::string_view name() const override { return "gauss_markov"; }
@@ -140,7 +140,7 @@ class EstimableGaussMarkov final : public Estimable {
     return {{"beta", "1/s", ParameterInfo::Kind::kRate}, {"sigma2", "signal^2"}};
   }
   [[nodiscard]] Eigen::Index states() const override { return 1; }
-  /// A correlation time of ten records is a random walk in all that can be seen; one of a third of an interval is white.
+  /// A correlation time of ten records cannot be distinguished from a random walk; one of a third of an interval is white.
   [[nodiscard]] std::vector<Interval> ranges(const SignalScale& scale) const override {
     return {{-std::log(10.0 * scale.duration), std::log(3.0 / scale.interval)}, log_variance_range(scale.variance)};
   }
@@ -179,7 +179,7 @@ class EstimableGaussMarkov final : public Estimable {
 ///     M = C - 2 phi B + phi^2 A = (C - 2 B + A) + 2 d (B - A) + d^2 A
 ///
 /// over R records with T transitions. The slope in phi is a cubic with one sign change in (0, 1), whether sigma2 is free
-/// (concentrated out) or fixed. In d no digits are lost where phi is close to 1.
+/// (concentrated out) or fixed. In d there is no loss of digits for phi close to 1.
 void EstimableGaussMarkov::maximise(const BlockMoments& m, double interval, const std::vector<bool>& fixed,
                                     std::span<double> u) const {
   const double A = m.before(0, 0);

@@ -1,11 +1,11 @@
 #pragma once
-// What a drift and a rate ramp have in common: a slope that stays, and what it has added up to.
+// Common base of drift and rate ramp: a constant slope and its integral.
 
 #include "coast/noise/process.hpp"
 
 namespace coast::noise {
 
-/// x = [value, slope], value = slope (t - start). Derived classes say what is known of the slope.
+/// x = [value, slope], value = slope (t - start). Derived classes define the initial slope and its uncertainty.
 class LinearRamp : public Process {
  public:
   [[nodiscard]] int states() const override { return 2; }
@@ -23,7 +23,7 @@ class LinearRamp : public Process {
     sign(0) = 1.0;
     sign(1) = -1.0;
   }
-  /// IEEE Std 952-1997 annex C: R^2 tau^2/2. Second differences know no straight line.
+  /// IEEE Std 952-1997 annex C: R^2 tau^2/2. The Hadamard variance is zero: second differences remove a straight line.
   [[nodiscard]] std::optional<double> allan_variance(double tau) const override {
     return 0.5 * mean_square_slope() * tau * tau;
   }

@@ -1,5 +1,5 @@
 #pragma once
-// The registrations that src/noise/registry.cpp lists; each is defined in the process's own file.
+// The registrations listed in src/noise/registry.cpp; each is defined in the process's own file.
 
 #include "coast/noise/estimable.hpp"
 #include "coast/noise/gauss_markov.hpp"
@@ -22,13 +22,13 @@ Registration share();
 
 /// White noise of the given density, [signal]/sqrt(Hz).
 [[nodiscard]] ProcessPtr make_white_noise(double density, Sensor sensor);
-/// How they are estimated; each is one object that lives as long as the program.
+/// Their estimables; each is one static object.
 [[nodiscard]] const Estimable& estimable_white_noise();
 [[nodiscard]] const Estimable& estimable_random_walk();
 [[nodiscard]] const Estimable& estimable_gauss_markov();
 /// @throws std::invalid_argument  an order beyond 4
 [[nodiscard]] const Estimable& estimable_ar(int order);
-/// beta of an entry's `correlation_time_s`, 0 where the key is absent.
+/// beta from an entry's `correlation_time_s`, 0 if the key is absent.
 [[nodiscard]] double beta_of(const config::Node& entry);
 
 }  // namespace coast::noise

@@ -10,11 +10,11 @@ namespace coast::noise {
 
 namespace {
 
-/// Rounding to a step. Its error is uniform over a step where the signal moves by more than one from sample to sample
-/// (Bennett 1948); a sensor that rests within a step reads a constant instead, which no variance describes.
+/// Rounding to a step. Its error is uniform over a step if the signal changes by more than one step from sample to sample
+/// (Bennett 1948); a signal that stays within a step reads as a constant instead, which no variance describes.
 class Quantisation final : public Process {
  public:
-  /// @param rate_hz  of the samples that are rounded; of no meaning for an integral
+  /// @param rate_hz  of the samples that are rounded; not used for an integral
   Quantisation(const Rounding& rounding, double rate_hz, std::string_view unit)
       : rounding_(rounding), rate_hz_(rate_hz), unit_(unit) {}
   [[nodiscard]] std::string_view name() const override { return "quantisation"; }
@@ -24,7 +24,7 @@ class Quantisation final : public Process {
   void output(Eigen::Ref<Eigen::RowVectorXd>) const override {}
   void initial_covariance(Eigen::Ref<Eigen::MatrixXd>) const override {}
   [[nodiscard]] std::optional<Rounding> rounding() const override { return rounding_; }
-  /// White noise of step^2/12 a sample. The error of a rounded integral is bounded, so it has no density at frequency zero.
+  /// White noise of step^2/12 per sample. The error of a rounded integral is bounded, so its density at zero frequency is zero.
   [[nodiscard]] geo::Psd white_density() const override {
     return of_integral() ? geo::Psd{} : geo::density_of_samples({variance()}, rate_hz_);
   }
@@ -49,7 +49,7 @@ class Quantisation final : public Process {
   std::string_view unit_;
 };
 
-// The unit says what is rounded.
+// The unit decides which quantity is rounded.
 Rounding::Of rounded(const config::Node& entry, const EntryContext& context) {
   const config::Node unit = entry.at("unit");
   try {
@@ -75,7 +75,7 @@ std::vector<ProcessPtr> make_quantisation(const config::Node& entry, const Entry
   return {std::make_shared<Quantisation>(rounding, context.rate_hz, si_unit(dimension.of(context.sensor)))};
 }
 
-/// Of the integral: u = log Q^2 [signal s]^2, Q = step/sqrt(12). The error of each integral is independent, so that of the mean
+/// For the integral: u = log Q^2 [signal s]^2, Q = step/sqrt(12). The error of each integral is independent, that of the mean
 /// rate is (e[k] - e[k-1])/interval: states e[k], e[k-1].
 class EstimableQuantisation final : public Estimable {
  public:

@@ -12,12 +12,12 @@ namespace coast::noise {
 
 namespace {
 
-/// dx = sqrt(q) dW, x(0) = 0: what starts unknown is a random_constant beside it.
+/// dx = sqrt(q) dW, x(0) = 0: an unknown start is modelled by an additional random_constant.
 class RandomWalk final : public ScalarProcess {
  public:
   RandomWalk(double density, std::string_view unit) : density_(density), unit_(unit) {}
   [[nodiscard]] std::string_view name() const override { return "random_walk"; }
-  /// IEEE Std 952-1997 annex C: K^2 tau/3; the Hadamard variance of it is half as large.
+  /// IEEE Std 952-1997 annex C: K^2 tau/3; its Hadamard variance is half as large.
   [[nodiscard]] std::optional<double> allan_variance(double tau) const override { return density_ * density_ * tau / 3.0; }
   [[nodiscard]] std::optional<double> hadamard_variance(double tau) const override { return density_ * density_ * tau / 6.0; }
   [[nodiscard]] std::string yaml() const override {

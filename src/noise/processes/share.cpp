@@ -12,7 +12,7 @@ namespace coast::noise {
 
 namespace {
 
-/// A process of one member's error as it acts in the sum: the states are the member's own, the output has the weight.
+/// One member's error process as it acts in the sum: the states are the member's own, the output is weighted.
 class SharedProcess final : public Process {
  public:
   SharedProcess(ProcessPtr own, std::string member, double weight) : own_(std::move(own)), share_{std::move(member), weight} {}

@@ -21,7 +21,7 @@ class WhiteNoise final : public Process {
   void output(Eigen::Ref<Eigen::RowVectorXd>) const override {}
   void initial_covariance(Eigen::Ref<Eigen::MatrixXd>) const override {}
   [[nodiscard]] geo::Psd white_density() const override { return density_; }
-  /// IEEE Std 952-1997 annex C: N^2/tau; averages are independent, so Hadamard's is the same.
+  /// IEEE Std 952-1997 annex C: N^2/tau; averages are independent, so the Hadamard variance is the same.
   [[nodiscard]] std::optional<double> allan_variance(double tau) const override { return density_.value / tau; }
   [[nodiscard]] std::optional<double> hadamard_variance(double tau) const override { return density_.value / tau; }
   [[nodiscard]] std::string yaml() const override {

@@ -23,7 +23,7 @@ void half_turn(Drive& drive, double degrees) {
 }  // namespace
 
 MotionPlan aircraft_lines(const MotionParameters& parameters) {
-  // The same height down as up, on average: slope times time at the same speed.
+  // On average the same height down as up: slope times time at the same speed.
   const double descent = kClimbSeconds * std::sin(kClimbSlope * kDegree) / std::sin(kDescentSlope * kDegree);
   Drive drive(parameters);
   drive.speed_to(4.0, 5.0)

@@ -1,4 +1,4 @@
-// A sensor on a table: what static records are made of.
+// A sensor on a table, for static records.
 
 #include "motions.hpp"
 

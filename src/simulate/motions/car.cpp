@@ -11,7 +11,7 @@ namespace {
 
 using geo::kDegree;
 
-// The body leans outward in turns, squats and dives, and shakes with the road in proportion to speed.
+// The body leans outward in turns, squats and dives, and vibrates with the road in proportion to speed.
 MotionPlan car(const Drive& drive) {
   const Steps shaking = drive.envelope(15.0);
   MotionPlan plan = drive.plan();
@@ -38,7 +38,7 @@ void end_at_rest(Drive& drive) {
   drive.stop(braking, 2.0);
 }
 
-// In from the right, counter-clockwise one and a half times on a radius of about 15 m, and out to the right.
+// Entry from the right, one and a half times counter-clockwise on a radius of about 15 m, and exit to the right.
 void roundabout(Drive& drive) {
   drive.speed_to(7.0, 4.0).turn(50.0, 3.0);
   const double start = drive.now();

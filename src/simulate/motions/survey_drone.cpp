@@ -8,7 +8,7 @@ namespace {
 
 using geo::kDegree;
 
-// To the next line, 25 m beside the last, and back along it.
+// To the next line, 25 m from the last, and back along it.
 void line(Drive& drive, bool to_the_right) {
   const double side = to_the_right ? 90.0 : -90.0;
   drive.speed_to(9.0, 5.0).cruise(22.0).speed_to(3.0, 4.0);

@@ -1,0 +1,111 @@
+#include "coast/diagnose/hypotheses.hpp"
+
+#include <algorithm>
+#include <iterator>
+
+#include "coast/geo/earth.hpp"
+#include "coast/geo/rotation.hpp"
+#include "coast/study/interpolation.hpp"
+
+namespace coast::diagnose {
+
+Hypotheses::Hypotheses(const estimate::Mission& mission, const estimate::FilterOptions& filter, Grade grade,
+                       const std::vector<record::NavState>& path, const std::vector<EffectPtr>& suggested)
+    : mission_(mission), filter_(filter), path_(path), signals_(mission.imu, mission.C_s_b) {
+  const auto add = [&](const Effect& effect) {
+    if (why_not_seen(effect) != nullptr) return;
+    const auto axes = static_cast<Eigen::Index>(effect.axes.size());
+    parts_.push_back({&effect, size(), axes});
+    for (Eigen::Index axis = 0; axis < axes; ++axis)
+      all_.push_back({&effect, axis, effect.plausible[static_cast<std::size_t>(grade)]});
+  };
+  for (const Effect& effect : catalogue()) add(effect);
+  for (const EffectPtr& effect : suggested) add(*effect);
+}
+
+Eigen::Index Hypotheses::bias_step(Site site, Eigen::Index axis) const {
+  const auto at = std::ranges::find_if(
+      all_, [&](const Hypothesis& h) { return h.effect->name == "bias_step" && h.effect->site == site && h.axis == axis; });
+  return at - all_.begin();
+}
+
+const char* Hypotheses::why_not_seen(const Effect& effect) const {
+  if (effect.needs_reference) return "no innovation changes: only a reference could show it";
+  if (effect.needs_temperature && !signals_.has_temperature()) return "no temperature was recorded";
+  if (effect.slip && !filter_.vehicle.non_holonomic) return "the run is not told that the vehicle neither slides nor lifts";
+  if (effect.slip && filter_.auxiliary.mounting_sd > 0.0) return "the run estimates it itself";
+  return nullptr;
+}
+
+Signals Hypotheses::signals(const estimate::SampleView& sample) const {
+  return signals_.at(std::min(sample.index, mission_.imu.samples.size() - 1), sample.omega_b, sample.f_b, sample.nav);
+}
+
+void Hypotheses::add_sensor_errors(const estimate::SampleView& sample, Eigen::Matrix3Xd& gyro_b,
+                                   Eigen::Matrix3Xd& accel_b) const {
+  const Signals at = signals(sample);
+  for (const Part& part : parts_) {
+    if (part.effect->sensors) {
+      SensorErrors errors{gyro_b.middleCols(part.first, part.count), accel_b.middleCols(part.first, part.count)};
+      part.effect->sensors(at, errors);
+    }
+  }
+  gyro_b = mission_.C_s_b * gyro_b;
+  accel_b = mission_.C_s_b * accel_b;
+}
+
+record::NavState Hypotheses::smoothed(const record::NavState& filtered) const {
+  const auto behind = std::ranges::lower_bound(path_, filtered.t, {}, &record::NavState::t);
+  if (behind == path_.end() || behind == path_.begin()) return filtered;
+  return study::interpolate(*std::prev(behind), *behind, filtered.t);
+}
+
+void Hypotheses::add_measurement_errors(const estimate::MeasurementView& m, Eigen::MatrixXd& D) const {
+  if (m.kind == estimate::UpdateKind::kGnssPosition || m.kind == estimate::UpdateKind::kGnssVelocity) add_fix_errors(m, D);
+  // z - v - C (omega x l): an excess of the rate appears as a deficit of the antenna velocity.
+  if (m.kind == estimate::UpdateKind::kGnssVelocity)
+    D += m.nav.q_b_e.toRotationMatrix() * geo::skew(m.context.lever_arm_b) * rate_errors(m, D.cols());
+  if (m.kind == estimate::UpdateKind::kNonHolonomic) add_slip(m, D);
+}
+
+void Hypotheses::add_slip(const estimate::MeasurementView& m, Eigen::MatrixXd& D) const {
+  const estimate::NonHolonomic& constraint = *filter_.vehicle.non_holonomic;
+  const record::NavState nav = smoothed(m.nav);
+  const WheelSignals s{nav.q_b_e.conjugate() * nav.v_eb_e + m.context.omega_eb_b.cross(constraint.point_b), constraint};
+  Eigen::Matrix2Xd columns = Eigen::Matrix2Xd::Zero(2, D.cols());
+  for (const Part& part : parts_)
+    if (part.effect->slip) part.effect->slip(s, columns.middleCols(part.first, part.count));
+  const Eigen::Matrix3Xd slip_b = geo::skew(constraint.point_b) * rate_errors(m, D.cols());
+  D = columns + (estimate::C_b_v_of(constraint.pitch, constraint.yaw) * slip_b).bottomRows<2>();
+}
+
+Eigen::Matrix3Xd Hypotheses::rate_errors(const estimate::MeasurementView& m, Eigen::Index columns) const {
+  Eigen::Matrix3Xd gyro_b = Eigen::Matrix3Xd::Zero(3, columns);
+  Eigen::Matrix3Xd accel_b = gyro_b;
+  const Eigen::Vector3d earth_b = m.nav.q_b_e.conjugate() * Eigen::Vector3d(0.0, 0.0, mission_.earth_rate);
+  add_sensor_errors({m.sample, m.context.omega_eb_b + earth_b, signals_.means_about(m.sample).f_b, m.nav}, gyro_b, accel_b);
+  return gyro_b;
+}
+
+void Hypotheses::add_fix_errors(const estimate::MeasurementView& m, Eigen::MatrixXd& D) const {
+  const record::NavState nav = smoothed(m.nav);
+  FixSignals s;
+  s.C_b_e = nav.q_b_e.toRotationMatrix();
+  s.C_n_e = m.context.C_n_e;
+  s.omega_b = m.context.omega_eb_b;
+  const SignalTable::Means means = signals_.means_about(m.sample);
+  const Eigen::Vector3d earth(0.0, 0.0, mission_.earth_rate);
+  s.v_ea_e = nav.v_eb_e + (s.C_b_e * means.omega_b - earth).cross(s.C_b_e * m.context.lever_arm_b);
+  s.a_ea_e = s.C_b_e * means.f_b + geo::gravity_e(nav.r_eb_e) - 2.0 * earth.cross(nav.v_eb_e);
+  s.elapsed = nav.t - mission_.imu.samples.front().t;
+  const bool position = m.kind == estimate::UpdateKind::kGnssPosition;
+  Eigen::Matrix3Xd columns(3, D.cols());
+  columns.setZero();
+  for (const Part& part : parts_) {
+    const auto& add = position ? part.effect->position : part.effect->velocity;
+    if (add) add(s, columns.middleCols(part.first, part.count));
+  }
+  D = columns;
+}
+
+}  // namespace coast::diagnose

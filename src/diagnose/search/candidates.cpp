@@ -1,0 +1,110 @@
+#include "search/candidates.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "search/movement.hpp"
+
+namespace coast::diagnose {
+
+namespace {
+
+constexpr double kLinear = 0.1;  // fraction of a large effect's gain by which its score may be wrong
+constexpr std::size_t kMostByRuns = 3;
+
+}  // namespace
+
+double evidence_of(const Suspicion& s, const State& state) {
+  return s.log_bayes - log_choices(state);
+}
+
+Candidates::Candidates(const State& state, Context& context) : state_(&state), context_(&context) {
+  find();
+  if (all_.empty()) return;
+  bound();
+  std::ranges::sort(all_, std::ranges::greater{}, [](const Candidate& c) { return c.suspicion.log_bayes; });
+  const double best = all_.front().suspicion.log_bayes;
+  const double least = best - std::max(kLogOdds, kLinear * best);
+  std::erase_if(all_, [least](const Candidate& c) { return c.suspicion.log_bayes < least; });
+  if (all_.size() > kMostByRuns) all_.resize(kMostByRuns);
+}
+
+void Candidates::find() {
+  const Suspicions& suspicions = state_->seen.suspicions;
+  const double false_alarm = context_->false_alarm_of_catalogue();
+  for (const Suspicion& s : suspicions.all)
+    if (!state_->excluded.excludes(s.hypothesis) && s.p_value < false_alarm) all_.push_back({s});
+  // No plausible effect explains the remainder: use implausible ones, if they are likelier nevertheless.
+  if (!all_.empty()) return;
+  for (const Suspicion& s : suspicions.implausible)
+    if (!state_->excluded.excludes(s.hypothesis) && evidence_of(s, *state_) > kLogOdds) all_.push_back({s});
+}
+
+void Candidates::bound() {
+  for (const Suspicion& s : state_->seen.suspicions.all) {
+    if (state_->excluded.excludes(s.hypothesis)) continue;
+    gain_ = std::max(gain_, 0.5 * s.likelihood_ratio);
+    evidence_ = std::max(evidence_, evidence_of(s, *state_));
+  }
+}
+
+bool Candidates::gain_is_exceeded_by(double gain) {
+  if (gain > gain_) run_all();
+  return gain > gain_;
+}
+
+bool Candidates::evidence_is_exceeded_by(double evidence) {
+  if (evidence > evidence_) run_all();
+  return evidence > evidence_;
+}
+
+void Candidates::run_all() {
+  for (Candidate& c : all_) {
+    if (!c.by_runs) run(c);
+    gain_ = std::max(gain_, *c.by_runs);
+    evidence_ = std::max(evidence_, c.log_bayes() - log_choices(*state_));
+  }
+}
+
+// The better of its first estimate and the next: scores are linear about zero, and for a large effect wrong by tens of
+// percent.
+void Candidates::run(Candidate& candidate) {
+  const Suspicion& s = candidate.suspicion;
+  const std::size_t selected = state_->explanation.effects.size();
+  double best = -std::numeric_limits<double>::infinity();
+  if (const RunPtr first =
+          context_->runs.try_about(state_->explanation.with({s.hypothesis, s.from, {}, s.estimate}), state_->run)) {
+    best = first->log_likelihood();
+    const Movement step = movement(first->scores(), first->explanation().effects);
+    const Explanation next = moved(first->explanation(), step);
+    for (std::size_t i = 0; i < selected; ++i)
+      if (std::abs(next.effects[i].value) < kInsignificant * step.sd(static_cast<Eigen::Index>(i)) &&
+          !is_of_a_line(state_->account.findings[i]))
+        candidate.freed += state_->account.findings[i].price + log_choices(*state_);
+    if (const RunPtr second = context_->runs.try_about(next, first)) best = std::max(best, second->log_likelihood());
+  }
+  candidate.by_runs = best - state_->run->log_likelihood();
+}
+
+Suspicion Candidates::likeliest() {
+  if (all_.size() > 1) run_all();
+  return std::ranges::max_element(all_, {}, &Candidate::log_bayes)->suspicion;
+}
+
+void Candidates::add_selected(Eigen::Index hypothesis, double gain) {
+  auto at = std::ranges::find(all_, hypothesis, &Candidate::hypothesis);
+  if (at == all_.end()) {
+    const Suspicion* suspicion = state_->seen.suspicions.of(hypothesis);
+    if (suspicion == nullptr || gain < 0.5 * threshold(*state_, *context_)) return;
+    at = all_.insert(all_.end(), {*suspicion});
+  }
+  at->by_runs = gain;
+}
+
+std::optional<double> Candidates::gained_by_runs(Eigen::Index hypothesis) const {
+  const auto at = std::ranges::find(all_, hypothesis, &Candidate::hypothesis);
+  return at != all_.end() ? at->by_runs : std::nullopt;
+}
+
+}  // namespace coast::diagnose

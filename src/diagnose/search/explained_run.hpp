@@ -1,0 +1,93 @@
+#pragma once
+// A run of the mission with an explanation, and the runs made by a diagnosis; private to the room.
+
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "evidence/mission_run.hpp"
+#include "search/explanation.hpp"
+
+namespace coast::diagnose {
+
+/// Sensor errors about which the filter is linearised. With biases at their prior mean tilts are wrong by mrad until
+/// the first manoeuvres, and the square of a tilt looks like a vertical bias that ends there. It is not updated by every run: a
+/// prior that is would be an additional fit, and likelihoods are compared under one prior. It is updated if a run estimates the
+/// sensors two sigmas from it.
+struct SensorsAtStart {
+  estimate::StateLayout layout;
+  Eigen::VectorXd x;
+};
+
+/// The mission filtered and smoothed, corrected for all effects of an explanation.
+class ExplainedRun {
+ public:
+  /// @param sensors  none: the run begins with those of the alignment
+  /// @param key      of the explanation and of the run about which it is linearised
+  /// @throws NumericalError  the filter fails
+  ExplainedRun(Explanation explanation, MissionInput input, std::optional<SensorsAtStart> sensors, std::size_t key, Grade grade,
+               const study::Progress& progress);
+  ExplainedRun(const ExplainedRun&) = delete;
+  ExplainedRun& operator=(const ExplainedRun&) = delete;
+
+  [[nodiscard]] const Explanation& explanation() const { return explanation_; }
+  [[nodiscard]] const MissionInput& input() const { return input_; }
+  [[nodiscard]] const std::optional<SensorsAtStart>& sensors() const { return sensors_; }
+  [[nodiscard]] std::size_t key() const { return key_; }
+  [[nodiscard]] const MissionRun& mission() const { return run_; }
+  [[nodiscard]] const Hypotheses& hypotheses() const { return run_.hypotheses(); }
+  /// With the error model's prior for shared biases.
+  [[nodiscard]] double log_likelihood() const;
+  /// Whether the estimated sensor errors are far from those at its start.
+  [[nodiscard]] bool found_sensors_elsewhere() const;
+  /// Scores and information, without draws. Computed once.
+  [[nodiscard]] const Examination& scores() const;
+  [[nodiscard]] Examination examined(ExaminationOptions options) const;
+
+ private:
+  Explanation explanation_;
+  MissionInput input_;
+  std::optional<SensorsAtStart> sensors_;
+  std::size_t key_;
+  const study::Progress& progress_;
+  MissionRun run_;
+  mutable std::optional<Examination> scores_;
+};
+using RunPtr = std::shared_ptr<const ExplainedRun>;
+
+/// Makes the runs of a diagnosis. The last few are cached, so that repeated proposals need no new run.
+class Runs {
+ public:
+  /// @param recorded  input of the diagnosis; @param progress  must outlive it
+  Runs(MissionInput recorded, Grade grade, const study::Progress& progress);
+
+  /// From the start in the setup or from the alignment.
+  [[nodiscard]] RunPtr first(const Explanation& explanation);
+  /// Linearised about another run: effects are corrected along its trajectory, and its start is the prior mean, with larger
+  /// sigmas.
+  /// @throws NumericalError  the filter fails
+  [[nodiscard]] RunPtr about(const Explanation& explanation, const RunPtr& other);
+  /// Likewise; null if the filter fails.
+  [[nodiscard]] RunPtr try_about(const Explanation& explanation, const RunPtr& other);
+  /// The mission with other sizes of the effects of a run, its start and its noise.
+  [[nodiscard]] MissionInput with_sizes(const std::vector<SelectedEffect>& effects, const ExplainedRun& run) const;
+
+  [[nodiscard]] const MissionInput& recorded() const { return recorded_; }
+  [[nodiscard]] Grade grade() const { return grade_; }
+  [[nodiscard]] const study::Progress& progress() const { return progress_; }
+  [[nodiscard]] std::size_t made() const { return made_; }
+
+ private:
+  [[nodiscard]] MissionInput explained(const Explanation& explanation, const MissionRun& along) const;
+  [[nodiscard]] SensorsAtStart sensors_for(const Explanation& explanation, const MissionInput& input,
+                                           const ExplainedRun& other);
+  [[nodiscard]] RunPtr remembered(std::size_t key, const Explanation& explanation) const;
+
+  MissionInput recorded_;
+  Grade grade_;
+  const study::Progress& progress_;
+  std::vector<RunPtr> last_;
+  std::size_t made_ = 0;
+};
+
+}  // namespace coast::diagnose

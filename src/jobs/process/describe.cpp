@@ -1,0 +1,52 @@
+// Description of a mission before its solution.
+
+#include <algorithm>
+#include <map>
+
+#include "process/stages.hpp"
+#include "process/trajectory_output.hpp"
+
+namespace coast::jobs {
+
+ProcessResult what_was_read(const Recordings& recordings) {
+  ProcessResult result;
+  const auto add = [&result](const record::Events& events) {
+    result.events.insert(result.events.end(), events.begin(), events.end());
+  };
+  add(recordings.imu.events);
+  add(recordings.gnss.events);
+  if (recordings.reference) add(recordings.reference->events);
+  add(recordings.inspection_events);
+  result.inspection = recordings.inspection;
+  result.imu_samples = recordings.imu.samples.size();
+  result.imu_rate_hz = recordings.imu.rate_hz;
+  for (const record::Event& event : recordings.imu.events)
+    if (event.kind == "imu_gap") result.imu_gaps += event.count;
+  return result;
+}
+
+void describe_mission(const Work& work, ProcessResult& result) {
+  const estimate::Mission& mission = work.mission.mission();
+  result.start = work.start();
+  result.end = mission.imu.samples.back().t;
+  result.alignment = work.mission.start().method;
+  result.files = trajectory_files(work.config.output);
+  result.noise_fit = work.mission.noise_fit();
+  const record::Events& adaptations = work.mission.adaptations();
+  result.events.insert(result.events.end(), adaptations.begin(), adaptations.end());
+  const auto met = [&](geo::GpsTime tagged) {  // by the filter, within its tolerance
+    constexpr double kTolerance = 2e-6;        // s
+    const geo::GpsTime t = tagged - mission.time_offset_s;
+    return t - result.start >= -kTolerance && t - result.end <= kTolerance;
+  };
+  std::map<record::FixQuality, std::size_t> counts;
+  for (const record::GnssFix& fix : mission.gnss.fixes)
+    if (met(fix.t)) ++counts[fix.quality];
+  result.qualities.assign(counts.begin(), counts.end());
+  for (const auto& [quality, count] : result.qualities) result.gnss_epochs += count;
+  if (mission.carrier == nullptr) return;
+  result.gnss_epochs =
+      static_cast<std::size_t>(std::ranges::count_if(mission.carrier->epochs, [&](const auto& epoch) { return met(epoch.t); }));
+}
+
+}  // namespace coast::jobs

@@ -1,0 +1,90 @@
+// The noise fitted to the innovations, with the stated one.
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "process/page/parts.hpp"
+
+namespace coast::jobs {
+
+namespace {
+
+using estimate::NoiseAdjustment;
+
+/// Presentation of a fitted parameter.
+struct FittedParameter {
+  const char* name;  ///< as in estimate::NoiseFit::names
+  const char* label;
+  const char* unit;  ///< "" : a factor on the stated sigma
+  double (*value)(const NoiseAdjustment&);
+  const char* subject;  ///< of a sentence about the factor; nullptr: no sentence
+};
+
+constexpr FittedParameter kParameters[] = {
+    {"gnss_scale_horizontal", "GNSS sigma, horizontal", "", [](const NoiseAdjustment& a) { return a.gnss_scale.horizontal; },
+     "the stated horizontal sigmas of the GNSS positions are"},
+    {"gnss_scale_vertical", "GNSS sigma, vertical", "", [](const NoiseAdjustment& a) { return a.gnss_scale.vertical; },
+     "the stated vertical sigmas of the GNSS positions are"},
+    {"gnss_scale_velocity", "GNSS sigma, velocity", "", [](const NoiseAdjustment& a) { return a.gnss_scale.velocity; },
+     "the stated sigmas of the GNSS velocities are"},
+    {"correlated_horizontal_m", "correlated GNSS error, horizontal", "m",
+     [](const NoiseAdjustment& a) { return a.correlated_gnss.horizontal_m; }, nullptr},
+    {"correlated_vertical_m", "correlated GNSS error, vertical", "m",
+     [](const NoiseAdjustment& a) { return a.correlated_gnss.vertical_m; }, nullptr},
+    {"correlated_time_s", "correlation time of it", "s", [](const NoiseAdjustment& a) { return a.correlated_gnss.time_s; },
+     nullptr},
+    {"gyro_factor", "gyro white noise", "", [](const NoiseAdjustment& a) { return a.gyro_factor; },
+     "the gyro noise of the error model is"},
+    {"accel_factor", "accelerometer white noise", "", [](const NoiseAdjustment& a) { return a.accel_factor; },
+     "the accelerometer noise of the error model is"},
+};
+
+const FittedParameter* find(const std::string& name) {
+  for (const FittedParameter& p : kParameters)
+    if (name == p.name) return &p;
+  return nullptr;
+}
+
+/// Within a factor of 2 a stated sigma is as good as usual.
+std::string sentence(const FittedParameter& parameter, double factor) {
+  constexpr double kWorthSaying = 2.0;
+  if (factor >= kWorthSaying)
+    return fmt::format("For this recording {} {} times too small.", parameter.subject, number(factor, 2));
+  if (factor <= 1.0 / kWorthSaying)
+    return fmt::format("For this recording {} {} times too large.", parameter.subject, number(1.0 / factor, 2));
+  return "";
+}
+
+}  // namespace
+
+void add_noise_fit(const ProcessPage& page, report::Section& section) {
+  if (!page.result.noise_fit) return;
+  const estimate::NoiseFit& fit = *page.result.noise_fit;
+  report::Table table;
+  table.id = "noise-fit";
+  table.title = "Noise found by the likelihood of the innovations";
+  table.caption = fmt::format(
+      "Already used in this run. A factor multiplies the stated standard deviation. Log-likelihood {:.1f} with the stated "
+      "noise, "
+      "{:.1f} with this one, over {} innovations.",
+      fit.log_likelihood_before, fit.log_likelihood_after, fit.innovations);
+  table.columns = {{"noise", "", false}, {"factor on stated", ""}, {"value", ""}, {"unit", "", false}, {"one sigma", "%"}};
+  for (std::size_t i = 0; i < fit.names.size(); ++i) {
+    const FittedParameter* parameter = find(fit.names[i]);
+    if (parameter == nullptr) continue;
+    const double value = parameter->value(fit.adjustment);
+    const bool factor = parameter->subject != nullptr;
+    const bool known = i < fit.log_sd.size() && std::isfinite(fit.log_sd[i]);
+    table.rows.push_back(cells({parameter->label, factor ? number(value) : "", factor ? "" : number(value), parameter->unit,
+                                known ? number(100.0 * fit.log_sd[i], 2) : "not determined"}));
+    if (!factor) continue;
+    const std::string text = sentence(*parameter, value);
+    if (text.empty()) continue;
+    table.rows.back()[1].verdict = report::Verdict::kWarn;
+    section.notes.push_back({report::Note::Kind::kWarning, "", text});
+  }
+  section.tables.push_back(std::move(table));
+}
+
+}  // namespace coast::jobs

@@ -1,0 +1,252 @@
+// The search's values: explanations, their runs, proposals and moves.
+
+#include <gtest/gtest.h>
+
+#include "coast/geo/units.hpp"
+#include "coast/noise/gauss_markov.hpp"
+#include "diagnose/concealed.hpp"
+#include "noise_effects/noise_effects.hpp"
+#include "search/begin.hpp"
+#include "search/moves/moves.hpp"
+#include "search/review.hpp"
+#include "search/search.hpp"
+#include "verdict/detectable.hpp"
+#include "verdict/held_out.hpp"
+
+namespace coast {
+namespace {
+
+using namespace diagnose;
+
+/// A mission and what its search needs.
+class Searching {
+ public:
+  explicit Searching(const MissionInput& input, const DiagnosisOptions& options = test::kWithoutTwins)
+      : runs_(with_open_gate(input), grade_of(input.setup.model), progress_), context{options, {}, runs_} {}
+
+ private:
+  study::Progress progress_;
+  Runs runs_;
+
+ public:
+  Context context;
+};
+
+Eigen::Index index_of(const State& state, std::string_view name, std::string_view axis) {
+  const std::vector<Hypothesis>& all = state.run->hypotheses().all();
+  const auto at =
+      std::ranges::find_if(all, [&](const Hypothesis& h) { return h.effect->name == name && h.axis_name() == axis; });
+  return at - all.begin();
+}
+
+TEST(Explanation, IsAValue) {
+  Explanation a;
+  a.effects = {{.hypothesis = 3, .value = 0.5}};
+  Explanation b = a;
+  EXPECT_TRUE(a == b);
+  EXPECT_EQ(a.hash(), b.hash());
+  b.effects.front().value = 0.25;
+  EXPECT_FALSE(a == b);
+  EXPECT_NE(a.hash(), b.hash());
+  b = a;
+  b.effects.front().from = geo::GpsTime::from_week(2374, 1000.0);
+  EXPECT_FALSE(a == b);
+  EXPECT_NE(a.hash(), b.hash());
+  b = a;
+  b.noise.emplace();
+  EXPECT_FALSE(a == b);
+  EXPECT_NE(a.hash(), b.hash());
+  b.noise->gyro_factor = 2.0;
+  a.noise.emplace();
+  EXPECT_FALSE(a == b);
+  b = a;
+  b.suggested.push_back(harmonic_disturbance(Site::kGyro, 0, 0.1, 0.0));
+  EXPECT_FALSE(a == b);
+  EXPECT_TRUE(b.is_suggested(*b.suggested.front()));
+  EXPECT_TRUE(b.with({.hypothesis = 1}).without(1) == b);
+}
+
+TEST(Runs, RememberTheLastFew) {
+  Searching search(test::honest_mission(1, 220.0));
+  Runs& runs = search.context.runs;
+  const State start = begin(search.context);
+  const Explanation slower = start.explanation.with({.hypothesis = index_of(start, "lever_arm_error", "y"), .value = 0.01});
+  const std::size_t made = runs.made();
+  const std::weak_ptr<const ExplainedRun> first = runs.about(slower, start.run);
+  EXPECT_EQ(runs.about(slower, start.run), first.lock());
+  EXPECT_EQ(runs.made(), made + 1);
+  // About another run it is another one.
+  EXPECT_NE(runs.about(slower, first.lock()), first.lock());
+  for (int i = 0; i < 8; ++i)
+    static_cast<void>(runs.about(start.explanation.with({.hypothesis = 0, .value = 1e-3 * (i + 1)}), start.run));
+  EXPECT_TRUE(first.expired());
+}
+
+// What is likelier by less than a proposal asks for leaves no trace.
+TEST(Proposal, InVainLeavesTheRunThatStands) {
+  Searching search(test::honest_mission(1, 220.0));
+  const State start = begin(search.context);
+  Proposal proposal{
+      .explanation = start.explanation.with({.hypothesis = index_of(start, "lever_arm_error", "y"), .value = 0.3}),
+      .about = start.run,
+      .before = start.run->log_likelihood(),
+      .least_gain = 0.0};
+  EXPECT_FALSE(accepted(proposal, start, search.context).has_value());
+  proposal.least_gain = -1e6;
+  double told = 0.0;
+  proposal.accept = [&](State&, double gain) { told = gain; };
+  const std::optional<State> next = accepted(proposal, start, search.context);
+  ASSERT_TRUE(next.has_value());
+  EXPECT_TRUE(next->explanation == proposal.explanation);
+  EXPECT_LT(told, -10.0);
+  EXPECT_DOUBLE_EQ(told, next->run->log_likelihood() - start.run->log_likelihood());
+}
+
+// Turns that tell a wrong offset: it is tried once, in vain.
+TEST(Search, AfterATimeOffsetInVainTheRunStands) {
+  Searching search(test::honest_mission(1, 220.0), {.twins = 0, .time_offset_s = 0.5});
+  const State start = begin(search.context);
+  const Step next = step(start, search.context);
+  EXPECT_FALSE(next.goes_on);
+  EXPECT_EQ(next.state.run, start.run);
+  EXPECT_TRUE(next.state.explanation == start.explanation);
+  EXPECT_FALSE(next.state.limits.time_offset_s.has_value());
+}
+
+// Steps that are coarse beside the noise but as nothing to the mission: they are seen, and the run without noise for them
+// stands.
+TEST(Search, AfterAMarkInVainTheRunStands) {
+  MissionInput input = test::honest_mission(1, 220.0);
+  const double white_sd = axis_series(input, Site::kAccel, 1).white_sd;
+  const double step = 0.55 * std::sqrt(12.0) * white_sd;
+  for (record::ImuSample& sample : input.imu.samples)
+    sample.dv.y() = step * std::round(sample.dv.y() / sample.dt / step) * sample.dt;
+  Searching search(input);
+  const State start = begin(search.context);
+  const State state = with_mended_samples(start, search.context);
+  ASSERT_EQ(state.account.marks.size(), 1U);
+  EXPECT_TRUE(state.account.converters.empty());
+  EXPECT_EQ(state.run, start.run);
+  EXPECT_EQ(state.explanation.imu, start.explanation.imu);
+}
+
+// What a saturated axis missed is mended with values that stand on no step.
+TEST(Search, CoarseStepsOfASaturatedAxisAreSeen) {
+  MissionInput input = test::honest_mission(11);
+  constexpr double kStep = 0.02;
+  double largest = 0.0;
+  for (const record::ImuSample& sample : input.imu.samples)
+    largest = std::max(largest, std::abs(sample.dtheta.z() / sample.dt));
+  const double limit = kStep * std::round(0.7 * largest / kStep);
+  for (record::ImuSample& sample : input.imu.samples)
+    sample.dtheta.z() = std::clamp(kStep * std::round(sample.dtheta.z() / sample.dt / kStep), -limit, limit) * sample.dt;
+  Searching search(input);
+  const State state = with_mended_samples(begin(search.context), search.context);
+  std::vector<std::string> marks;
+  for (const Mark& mark : state.account.marks) marks.emplace_back(mark.effect->name);
+  EXPECT_EQ(marks, (std::vector<std::string>{"saturation", "quantisation"}));
+}
+
+Finding finding_of_a(const Effect& effect, Eigen::Index axis) {
+  Finding finding;
+  finding.hypothesis = {&effect, axis, effect.plausible[2]};
+  finding.price = 3.0;
+  finding.sd = 1.0;
+  return finding;
+}
+
+// Sine and cosine are one choice, of one place in the spectrum.
+TEST(Evidence, ALineIsChargedOnce) {
+  Searching search(test::honest_mission(1, 220.0));
+  State none = begin(search.context);
+  const EffectPtr line = harmonic_disturbance(Site::kGyro, 0, 0.1, 0.0);
+  State both = none;
+  both.account.findings = {finding_of_a(*line, 0), finding_of_a(*line, 1)};
+  EXPECT_EQ(selected_together(both.account, 0), 2U);
+  EXPECT_NEAR(evidence_of(none) - evidence_of(both), log_choices(none) + 3.0, 1e-9);
+}
+
+// Two coefficients as well, and each by itself.
+TEST(State, WhatHasTwoAxesIsNotALine) {
+  Searching search(test::honest_mission(1, 220.0));
+  State state = begin(search.context);
+  const Eigen::Index phase_centre = index_of(state, "antenna_phase_center_heading_dependent", "cos");
+  state.explanation.effects = {{.hypothesis = phase_centre, .value = 1e-6}};
+  state.account.findings = {finding_of_a(*state.run->hypotheses()[phase_centre].effect, 0)};
+  EXPECT_FALSE(is_of_a_line(state.account.findings.front()));
+  const State left = without_insignificant(state, search.context);
+  EXPECT_TRUE(left.explanation.effects.empty());
+  EXPECT_TRUE(left.account.findings.empty());
+  EXPECT_TRUE(left.excluded.excludes(phase_centre));
+}
+
+// What is estimated beside another is known less well, and has to be larger to be found.
+TEST(Detectable, SizesAreThoseBesideWhatWasFound) {
+  Searching search(test::honest_mission(1, 220.0));
+  const State none = begin(search.context);
+  const Eigen::Index arm = index_of(none, "lever_arm_error", "y");
+  const State one =
+      with_run(none, search.context.runs.about(none.explanation.with({.hypothesis = arm, .value = 1e-4}), none.run));
+  Diagnosis before, after;
+  tell_what_was_not_found(none, 10.0, before);
+  tell_what_was_not_found(one, 10.0, after);
+  ASSERT_EQ(after.detectable_not_found.size() + 1, before.detectable_not_found.size());
+  double largest = 0.0;
+  for (const Detectable& d : after.detectable_not_found) {
+    const auto same = std::ranges::find_if(before.detectable_not_found, [&](const Detectable& b) {
+      return b.hypothesis.effect == d.hypothesis.effect && b.hypothesis.axis == d.hypothesis.axis;
+    });
+    ASSERT_NE(same, before.detectable_not_found.end());
+    EXPECT_GT(d.minimal, 0.98 * same->minimal) << d.hypothesis.effect->name << d.hypothesis.axis_name();
+    largest = std::max(largest, d.minimal / same->minimal);
+  }
+  EXPECT_GT(largest, 1.05);
+}
+
+TEST(HeldOut, SineAndCosineAreOne) {
+  MissionInput input = test::honest_mission(9, 240.0);
+  for (record::ImuSample& sample : input.imu.samples)
+    sample.dv.y() += 0.05 * std::sin(2.0 * geo::kPi * 0.11 * (sample.t - input.imu.samples.front().t) + 0.7) * sample.dt;
+  Searching search(input);
+  State state = begin(search.context);
+  const EffectPtr line = harmonic_disturbance(Site::kAccel, 1, 0.11, 0.0);
+  Explanation explanation = state.explanation;
+  explanation.suggested = {line};
+  for (Eigen::Index i = 0; i < 2; ++i) explanation.effects.push_back({.hypothesis = state.run->hypotheses().size() + i});
+  state = with_run(state, search.context.runs.about(explanation, state.run));
+  state = with_run(state, search.context.runs.about(followed(*state.run), state.run));
+  state.account.findings = {finding_of_a(*line, 0), finding_of_a(*line, 1)};
+  const Verification verification = verify(state, search.context);
+  ASSERT_EQ(verification.effects.size(), 1U);
+  EXPECT_EQ(verification.effects.front().count, 2U);
+  EXPECT_NEAR(verification.effects.front().gain, verification.all.gain, 1e-6);  // there is no other
+  EXPECT_EQ(verification.worst(), nullptr);
+  const State without = given_up(state, 0, search.context);
+  EXPECT_TRUE(without.explanation.effects.empty());
+  EXPECT_TRUE(without.excluded.excludes(*line));
+}
+
+// What one axis has no more leaves the states of the axes behind it.
+TEST(SensorStates, KeepTheLaterAxesWhereAProcessIsGone) {
+  MissionInput plain = test::honest_mission(1, 220.0);
+  MissionInput more = plain;
+  append({noise::make_gauss_markov({.name = "gauss_markov", .sigma = 1e-3, .beta = 0.1, .unit = "rad/s"})},
+         noise::Sensor::kGyro, 0, more);
+  const estimate::StateLayout from = layout_of(more), to = layout_of(plain);
+  const Eigen::VectorXd x = Eigen::VectorXd::LinSpaced(from.sensor_end(), 1.0, static_cast<double>(from.sensor_end()));
+  const Eigen::VectorXd states = sensor_states_in(to, from, x);
+  ASSERT_EQ(states.size(), to.sensor_end());
+  EXPECT_TRUE((states.array() > 0.0).all());
+  const Eigen::VectorXd back = sensor_states_in(from, to, states);
+  EXPECT_EQ((back.array() == 0.0).count(), from.sensor_end() - to.sensor_end());
+  EXPECT_TRUE(((back - x).array() == 0.0 || back.array() == 0.0).all());
+}
+
+TEST(Moves, BothOrdersHaveTheSameOnes) {
+  EXPECT_EQ(moves(Order::kNoiseFirst).size(), moves(Order::kMeansFirst).size());
+  for (const Order order : {Order::kNoiseFirst, Order::kMeansFirst})
+    EXPECT_EQ(std::ranges::count(moves(order), Move{add_mean_effect}), 1);
+}
+
+}  // namespace
+}  // namespace coast
