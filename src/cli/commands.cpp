@@ -124,6 +124,7 @@ void diagnose(const std::filesystem::path& run_yaml, const DiagnoseOptions& choi
   const jobs::Progress progress = on_terminal(line, options.quiet);
   jobs::DiagnosisConfig config = jobs::read_diagnose(run_yaml);
   config.twins = choice.twins;
+  config.quick = choice.quick;
   config.simulation = choice.simulation;
   jobs::Recordings recordings = jobs::load(config.run, progress);
   const std::filesystem::path out = jobs::results_folder(run_yaml, options.out, jobs::files_of(config));

@@ -26,6 +26,7 @@ void ppk(const std::filesystem::path& input, const CommonOptions& options);
 void synth(const std::filesystem::path& input, const CommonOptions& options);
 struct DiagnoseOptions {
   int twins = 20;
+  bool quick = false;
   std::filesystem::path simulation;
 };
 void diagnose(const std::filesystem::path& run_yaml, const DiagnoseOptions& choice, const CommonOptions& options);

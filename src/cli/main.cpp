@@ -145,6 +145,8 @@ void add_diagnose(CLI::App& app, std::filesystem::path& input, coast::cli::Diagn
   diagnose->add_option("--twins", choice.twins, "simulated twins that the recording is set against; 0: none")
       ->check(CLI::Range(0, 1000))
       ->capture_default_str();
+  diagnose->add_flag("--quick", choice.quick, "one search and no twins: a first answer in a fraction of the time")
+      ->excludes("--twins");
   diagnose->add_option("--simulation", choice.simulation,
                        "your own simulation in place of the twins: a scenario, or the run.yaml of a simulated recording");
   diagnose->callback([&] {

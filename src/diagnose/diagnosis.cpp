@@ -119,6 +119,7 @@ void try_all_constant(Searched& best, Context& context) {
 Searched likeliest(const State& start, Context& context) {
   Searched best{start};
   search_to_the_end(best, context);
+  if (!context.options.exchanges) return best;
   if (best.state.account.noise || !best.state.explanation.random.empty()) {
     Searched other{start};
     other.state.limits.order = Order::kMeansFirst;

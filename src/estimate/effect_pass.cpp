@@ -104,10 +104,10 @@ class EffectRecursion {
     of_states_.through_transition(knot);
   }
 
-  void through_update(const AppliedUpdate& u, const Eigen::MatrixXd& D) {
+  void through_update(geo::GpsTime t, const AppliedUpdate& u, const Eigen::MatrixXd& D) {
     const Eigen::VectorXd innovation = u.S_inv * u.y - u.K.transpose() * of_states_.r();
     r_.noalias() += D.transpose() * innovation;
-    draw(u, D);
+    draw(t, u, D);
     const Eigen::MatrixXd NK = of_states_.N() * u.K;               // n x m
     const Eigen::MatrixXd KtN_cross = u.K.transpose() * N_cross_;  // m x p
     const Eigen::MatrixXd weight = u.S_inv + u.K.transpose() * NK;
@@ -133,16 +133,14 @@ class EffectRecursion {
     M.topRows<kNav>().setZero();
     M.topRows(nav.rows()) += nav;
   }
-  // As through_update, with innovations drawn from the filter's own covariance.
-  void draw(const AppliedUpdate& u, const Eigen::MatrixXd& D) {
+  // As through_update, with drawn innovations.
+  void draw(geo::GpsTime t, const AppliedUpdate& u, const Eigen::MatrixXd& D) {
     if (null_.cols() == 0) return;
-    Eigen::MatrixXd S_inv_y(u.y.size(), null_.cols());
-    options_.fill_normal(S_inv_y);
-    if (u.S_inv.isZero(0.0)) {
-      S_inv_y.setZero();
-    } else {
-      const Eigen::LLT<ComponentCov> llt(u.S_inv);
-      S_inv_y = llt.matrixL() * S_inv_y;  // of y with covariance S
+    Eigen::MatrixXd S_inv_y = Eigen::MatrixXd::Zero(u.y.size(), null_.cols());
+    if (!u.S_inv.isZero(0.0)) {
+      const ComponentCov L = Eigen::LLT<ComponentCov>(u.S_inv).matrixL();
+      options_.draw(t, L.transpose() * u.y, S_inv_y);
+      S_inv_y = L.triangularView<Eigen::Lower>() * S_inv_y;  // of y with covariance S
     }
     S_inv_y.noalias() -= u.K.transpose() * null_x_;
     null_.noalias() += D.transpose() * S_inv_y;
@@ -186,7 +184,7 @@ void effect_pass(const Mission& mission, const StateLayout& layout, const KnotSt
     for (auto update = knot.updates.rbegin(); update != knot.updates.rend(); ++update) {
       D.setZero(update->y.size(), effects.size());
       effects.add_measurement_errors({update->kind, knot.next_sample, knot.post.nav, context}, D);
-      recursion.through_update(counted ? *update : silent(*update), D);
+      recursion.through_update(knot.post.nav.t, counted ? *update : silent(*update), D);
     }
     visit(recursion.at(knot.post.nav.t));
     if (options.progress && k % 256 == 0) options.progress(1.0 - static_cast<double>(k) / static_cast<double>(knots.size()));

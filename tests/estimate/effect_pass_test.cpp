@@ -100,7 +100,7 @@ class EffectPassTest : public testing::Test {
                      std::normal_distribution<double> normal;
                      EffectPassOptions options;
                      options.draws = draws;
-                     options.fill_normal = [&](Eigen::Ref<Eigen::MatrixXd> m) {
+                     options.draw = [&](geo::GpsTime, const Eigen::VectorXd&, Eigen::Ref<Eigen::MatrixXd> m) {
                        for (double& value : m.reshaped()) value = normal(random);
                      };
                      effect_pass(mission, filter.layout(), knots, FourEffects(recording_), options, [&](const Evidence& e) {

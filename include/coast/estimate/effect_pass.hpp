@@ -55,14 +55,19 @@ struct Evidence {
   const Eigen::VectorXd& r_effects;  ///< p
   const Eigen::MatrixXd& N_cross;    ///< n x p
   const Eigen::MatrixXd& N_effects;  ///< p x p
-  /// r and r_effects for innovations drawn from the filter's own covariances: one column per draw.
+  /// r and r_effects for the innovations of `EffectPassOptions::draw`: one column per draw.
   const Eigen::MatrixXd& null_r;          ///< n x draws
   const Eigen::MatrixXd& null_r_effects;  ///< p x draws
 };
 
+/// Fills a matrix, one column per draw, with values in place of an update's whitened innovation: `whitened` has covariance I where
+/// the filter's model is true, S = L^-T L^-1, whitened = L' y.
+using DrawInnovations =
+    std::function<void(geo::GpsTime t, const Eigen::VectorXd& whitened, Eigen::Ref<Eigen::MatrixXd> draws)>;
+
 struct EffectPassOptions {
   Eigen::Index draws = 0;
-  std::function<void(Eigen::Ref<Eigen::MatrixXd>)> fill_normal;  ///< fills it with independent standard normal numbers
+  DrawInnovations draw;  ///< not called without draws
   std::function<void(double)> progress;
   std::function<bool(geo::GpsTime)> counts = {};  ///< updates at other instants give no evidence; empty: all count
 };

@@ -13,7 +13,8 @@ namespace coast::jobs {
 
 struct DiagnosisConfig {
   RunConfig run;
-  int twins = 20;  ///< simulated twins for comparison with the recording
+  int twins = 20;      ///< simulated twins for comparison with the recording
+  bool quick = false;  ///< one search: no twins, and no explanation that only another order or an exchange leads to
   /// The user's own simulation instead of twins of the configured model: a scenario, or the run.yaml of a simulated recording.
   std::filesystem::path simulation;
 };
@@ -32,6 +33,7 @@ struct SimulationCheck {
 
 struct DiagnosisResult {
   diagnose::Diagnosis diagnosis;
+  bool quick = false;  ///< as configured
   std::optional<SimulationCheck> simulation;
   geo::GpsTime start, end;  ///< of the recording
 };

@@ -132,7 +132,7 @@ Examination examine(const estimate::Mission& mission, const estimate::StateLayou
   estimate::EffectPassOptions pass;
   pass.draws = options.draws;
   pass.counts = options.counts;
-  pass.fill_normal = [&normal](Eigen::Ref<Eigen::MatrixXd> values) {
+  pass.draw = [&normal](geo::GpsTime, const Eigen::VectorXd&, Eigen::Ref<Eigen::MatrixXd> values) {
     for (double& value : values.reshaped()) value = normal();
   };
   pass.progress = progress;

@@ -108,8 +108,9 @@ DiagnosisResult diagnose(const DiagnosisConfig& config, Recordings recordings, c
   const std::vector<diagnose::MissionInput> simulations =
       simulated_inputs(config.simulation, input.setup, config.twins, progress);
   DiagnosisResult result;
+  result.quick = config.quick;
   result.simulation = check_simulation(config, input, simulations, progress);
-  diagnose::DiagnosisOptions search{.twins = config.twins};
+  diagnose::DiagnosisOptions search{.twins = config.quick ? 0 : config.twins, .exchanges = !config.quick};
   if (const std::optional<double> shift = recordings.time_shift_s) search.time_offset_s = -*shift;
   if (recordings.reference) search.reference = {&*recordings.reference, config.run.reference_lever_arm_b};
   result.diagnosis = diagnose::diagnose(input, search, progress, simulations);

@@ -27,12 +27,12 @@ void write(const DiagnosisConfig& config, const DiagnosisResult& result, const s
   else
     std::filesystem::remove(folder / kErrorModel);  // of an earlier diagnosis
   io::write_text(folder / "run.diagnosed.yaml", diagnosed);
-  write_page(diagnosis_page(config.run.file.filename().string(), result.diagnosis, diagnosed, result.simulation), folder);
+  write_page(diagnosis_page(config.run.file.filename().string(), result, diagnosed), folder);
   io::write_text(folder / "diagnosis.json", diagnosis_json(result));
 }
 
 std::string told(const DiagnosisConfig&, const DiagnosisResult& result, const std::filesystem::path& folder) {
-  return fmt::format("{}the run with it: {}\nreport: {}\n", diagnosis_text(result.diagnosis, result.simulation),
+  return fmt::format("{}the run with it: {}\nreport: {}\n", diagnosis_text(result),
                      (folder / "run.diagnosed.yaml").string(), (folder / "report.html").string());
 }
 

@@ -13,8 +13,11 @@ namespace coast::jobs {
 
 /// Schema coast.diagnosis/1 (docs/schema/diagnosis.schema.json). Effects in decreasing order of their explained part.
 [[nodiscard]] std::string diagnosis_json(const DiagnosisResult& result);
-[[nodiscard]] std::string diagnosis_text(const diagnose::Diagnosis& diagnosis,
-                                         const std::optional<SimulationCheck>& simulation);
+[[nodiscard]] std::string diagnosis_text(const DiagnosisResult& result);
+/// What a quick diagnosis leaves out.
+inline constexpr std::string_view kQuick =
+    "Quick: one search, and no simulated twins. A likelier explanation that only another order of the search leads to, or that "
+    "takes the place of one of these, is found without --quick.";
 /// The run's own configuration with the findings: by their key if they have one, else as `effects`, the GNSS noise, and the
 /// name of the error model if it has changed. @param resolved  run.resolved.yaml
 [[nodiscard]] std::string diagnosed_yaml(const std::string& resolved, const diagnose::Diagnosis& diagnosis,
@@ -28,8 +31,8 @@ namespace coast::jobs {
 [[nodiscard]] std::string_view why_rejected(diagnose::Rejected::Reason reason);
 /// Whether the error model with the findings differs from the configured one.
 [[nodiscard]] bool changes_error_model(const diagnose::Diagnosis& diagnosis);
-[[nodiscard]] report::Page diagnosis_page(const std::string& title, const diagnose::Diagnosis& diagnosis,
-                                          const std::string& diagnosed_yaml, const std::optional<SimulationCheck>& simulation);
+[[nodiscard]] report::Page diagnosis_page(const std::string& title, const DiagnosisResult& result,
+                                          const std::string& diagnosed_yaml);
 /// The section that compares the recording with its twins.
 [[nodiscard]] report::Section twin_section(const diagnose::Diagnosis& diagnosis,
                                            const std::optional<SimulationCheck>& simulation);

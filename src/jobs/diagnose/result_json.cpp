@@ -199,6 +199,7 @@ std::string diagnosis_json(const DiagnosisResult& result) {
   Json j;
   j["schema"] = "coast.diagnosis/1";
   j["mismatch"] = !d.findings.empty() || !d.noise.empty();
+  j["quick"] = result.quick;
   j["reference_used"] = d.reference_used;
   j["effects"] = effects_json(d, start, end, simulation);
   if (simulation)
@@ -230,7 +231,9 @@ std::string_view in_simulation(const diagnose::Finding& finding, const std::opti
   return simulation->has(finding) ? " The simulation has it too." : " The simulation does not have it.";
 }
 
-std::string diagnosis_text(const diagnose::Diagnosis& d, const std::optional<SimulationCheck>& simulation) {
+std::string diagnosis_text(const DiagnosisResult& result) {
+  const diagnose::Diagnosis& d = result.diagnosis;
+  const std::optional<SimulationCheck>& simulation = result.simulation;
   std::string text;
   if (d.findings.empty() && d.noise.empty()) text = "Nothing is missing from the model that this mission could show.\n";
   for (const diagnose::Finding& f : d.findings)
@@ -241,6 +244,7 @@ std::string diagnosis_text(const diagnose::Diagnosis& d, const std::optional<Sim
   for (const diagnose::RunKey& key : keys_found(d))
     text += fmt::format("The run file states it: `{}: {{{}: {}}}`.\n", key.section, key.name, key.text(d.modelled.setup));
   if (const std::string why = why_not_accepted(d); !why.empty()) text += fmt::format("Not accepted. {}\n", why);
+  if (result.quick) text += std::string(kQuick) + "\n";
   if (simulation)
     for (const diagnose::Finding& f : simulation->diagnosis.findings)
       if (!SimulationCheck{{}, d}.has(f))

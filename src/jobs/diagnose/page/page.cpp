@@ -188,14 +188,16 @@ report::Section detectable_section(const Diagnosis& d) {
 
 }  // namespace
 
-report::Page diagnosis_page(const std::string& title, const Diagnosis& d, const std::string& diagnosed_yaml,
-                            const std::optional<SimulationCheck>& simulation) {
+report::Page diagnosis_page(const std::string& title, const DiagnosisResult& result, const std::string& diagnosed_yaml) {
+  const Diagnosis& d = result.diagnosis;
+  const std::optional<SimulationCheck>& simulation = result.simulation;
   report::Page page;
   page.title = title;
   page.subtitle = "What the configured model leaves out";
   if (!d.innovations_before.empty()) page.start = d.innovations_before.front().t;
   page.tiles = diagnosis_tiles(d);
   page.sections = {missing_section(d, simulation), fit_section(d)};
+  if (result.quick) page.sections.front().notes.push_back({report::Note::Kind::kInfo, "Quick", std::string(kQuick)});
   if (!d.twins.empty()) page.sections.push_back(twin_section(d, simulation));
   page.sections.push_back(detectable_section(d));
   page.sections.back().notes.push_back(
