@@ -115,6 +115,23 @@ TEST(DiagnoseCommand, FindsAWrongLeverArmAndTheRunWithoutItFits) {
               stated["imu"]["lever_arm_m"][1].get<double>() + size["value"].get<double>(), 1e-4);
 }
 
+TEST(DiagnoseCommand, QuickFindsItWithoutTwinsAndSaysWhatIsLeftOut) {
+  const test::TemporaryDirectory folder;
+  const fs::path out = folder.path() / "quick";
+  const Outcome outcome =
+      run(fmt::format("diagnose '{}' --quick --out '{}'", wrong_lever_arm().string(), out.string()), folder.path());
+  ASSERT_EQ(outcome.status, 0) << outcome.error;
+  EXPECT_NE(text_of(out / "report.json").find("without --quick"), std::string::npos);
+  const nlohmann::json diagnosis = nlohmann::json::parse(text_of(out / "diagnosis.json"));
+  test::expect_valid("diagnosis", diagnosis);
+  EXPECT_TRUE(diagnosis["quick"].get<bool>());
+  EXPECT_TRUE(diagnosis["twins"].empty());
+  EXPECT_TRUE(named_in(diagnosis["effects"], "lever_arm_error", "y").is_object()) << diagnosis["effects"];
+  const Outcome both = run(fmt::format("diagnose '{}' --quick --twins 3", wrong_lever_arm().string()), folder.path());
+  EXPECT_NE(both.status, 0);
+  EXPECT_NE(both.error.find("--quick"), std::string::npos) << both.error;
+}
+
 TEST(DiagnoseCommand, SaysWhatTheUsersOwnSimulationLacks) {
   const test::TemporaryDirectory folder;
   const fs::path scenario = city_drive().parent_path() / "scenario.yaml";

@@ -21,7 +21,7 @@ def innovations(folder):
     with open(os.path.join(folder, "run.yaml"), encoding="ascii") as file:
         text = file.read()
     with open(run, "w", encoding="ascii") as file:
-        file.write(text + "smoother: none\nfilter: {gate_probability: 0}\n")
+        file.write(text + "smoother: none\nfilter: {gate_probability: 0}\naccept: true\n")
     subprocess.run([coast, "process", run, "--out", os.path.join(folder, "probe"), "--quiet", "--threads", "1"], check=True)
     with open(os.path.join(folder, "probe", "innovations.csv"), encoding="ascii") as file:
         return {(r["kind"], float(r["sow_s"])): [(float(r[f"nu_{i}"]), float(r[f"sd_{i}"])) for i in (1, 2, 3)]
