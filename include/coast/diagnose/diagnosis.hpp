@@ -156,7 +156,7 @@ struct DiagnosisOptions {
   double false_alarm_probability = 0.05;  ///< for a recording without missing effects
   int most_effects = 6;  ///< mean effects; plus one for each replacement by one from the start on, or of a bias
   std::uint64_t seed = 1;
-  int twins = 20;  ///< per model; 0: none
+  int twins = 20;         ///< per model; 0: none
   bool exchanges = true;  ///< search again with mean effects first, and from exchanges that no single step leads to
   /// `gnss.time_offset_s` for which turns of GNSS and IMU match best (io::inspect). If it is far from the configured one, the
   /// search begins with a run there: a score linearised about the configured value does not detect it.

@@ -60,10 +60,9 @@ struct Evidence {
   const Eigen::MatrixXd& null_r_effects;  ///< p x draws
 };
 
-/// Fills a matrix, one column per draw, with values in place of an update's whitened innovation: `whitened` has covariance I where
-/// the filter's model is true, S = L^-T L^-1, whitened = L' y.
-using DrawInnovations =
-    std::function<void(geo::GpsTime t, const Eigen::VectorXd& whitened, Eigen::Ref<Eigen::MatrixXd> draws)>;
+/// Fills a matrix, one column per draw, with values in place of an update's whitened innovation: `whitened` has covariance I
+/// where the filter's model is true, S = L^-T L^-1, whitened = L' y.
+using DrawInnovations = std::function<void(geo::GpsTime t, const Eigen::VectorXd& whitened, Eigen::Ref<Eigen::MatrixXd> draws)>;
 
 struct EffectPassOptions {
   Eigen::Index draws = 0;

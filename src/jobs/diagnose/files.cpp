@@ -32,8 +32,8 @@ void write(const DiagnosisConfig& config, const DiagnosisResult& result, const s
 }
 
 std::string told(const DiagnosisConfig&, const DiagnosisResult& result, const std::filesystem::path& folder) {
-  return fmt::format("{}the run with it: {}\nreport: {}\n", diagnosis_text(result),
-                     (folder / "run.diagnosed.yaml").string(), (folder / "report.html").string());
+  return fmt::format("{}the run with it: {}\nreport: {}\n", diagnosis_text(result), (folder / "run.diagnosed.yaml").string(),
+                     (folder / "report.html").string());
 }
 
 }  // namespace coast::jobs
