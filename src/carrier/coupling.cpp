@@ -40,7 +40,7 @@ CoupledEpoch Coupling::step(RelativeState prior, const DifferenceEpoch& epoch) {
       coupled.ratio = fixed.ratio;
       coupled.shortfall = fixed.shortfall;
       if (fixed.fixed) {
-        HeldIntegers integers = held(parts_->hold.agreed(fixed), filter.state());
+        HeldIntegers integers = held(parts_->hold.agreed(fixed.pairs), filter.state());
         coupled.H_integers = std::move(integers.H);
         coupled.nu_integers = std::move(integers.nu);
       }

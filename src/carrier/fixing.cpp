@@ -134,6 +134,14 @@ std::vector<Satellite> by_elevation(const std::vector<Fixable>& set) {
   return satellites;
 }
 
+/// Those of known integers.
+std::vector<Fixable> among(std::vector<Fixable> set, const std::vector<FixedPair>& known, const RelativeState& state) {
+  std::set<Eigen::Index> indices;
+  for (const FixedPair& p : known) indices.insert({state.index(p.ambiguity), state.index(p.reference)});
+  std::erase_if(set, [&](const Fixable& f) { return !indices.contains(f.index); });
+  return set;
+}
+
 /// Partial fixing. At least half of the ambiguities are kept: few integers that seem significant are often wrong.
 class PartialFixing {
  public:
@@ -142,9 +150,11 @@ class PartialFixing {
 
   /// All; else without those left float in the previous epoch; else, if the integers are too uncertain, without the least
   /// certain, if they are not significant, without one satellite, tried in turn, or without the lowest.
-  std::optional<Attempt> run(const std::vector<Satellite>& without_last) {
+  std::optional<Attempt> run(const std::vector<Satellite>& without_last, const std::vector<Fixable>& known) {
     if (!best_ || done()) return best_;
     const Attempt whole = *best_;
+    if (!known.empty()) consider(known);
+    if (done()) return best_;
     std::vector<Fixable> set = all_;
     for (const Satellite satellite : without_last) set = without(set, satellite);
     if (set.size() < all_.size()) consider(set);
@@ -202,7 +212,8 @@ void take(const Attempt& t, RelativeState& state, FixedSolution& solution) {
 
 }  // namespace
 
-FixedSolution AmbiguityFixing::fix(const DifferenceEpoch& epoch, const FloatEpoch& updated, const RelativeState& state) {
+FixedSolution AmbiguityFixing::fix(const DifferenceEpoch& epoch, const FloatEpoch& updated, const RelativeState& state,
+                                   const std::vector<FixedPair>& known) {
   FixedSolution solution;
   const std::vector<Fixable> all = fixable(epoch, updated, state, options_.elevation_mask);
   std::vector<Fixable> first = all, glonass;
@@ -210,7 +221,7 @@ FixedSolution AmbiguityFixing::fix(const DifferenceEpoch& epoch, const FloatEpoc
   std::ranges::copy_if(all, std::back_inserter(glonass),
                        [](const Fixable& f) { return f.satellite.system == SatelliteSystem::kGlonass; });
   if (first.empty()) std::swap(first, glonass);
-  const std::optional<Attempt> best = PartialFixing(first, state, options_).run(without_);
+  const std::optional<Attempt> best = PartialFixing(first, state, options_).run(without_, among(first, known, state));
   if (!best) {
     solution.shortfall = Shortfall::kFewAmbiguities;
     return solution;
@@ -232,46 +243,6 @@ FixedSolution AmbiguityFixing::fix(const DifferenceEpoch& epoch, const FloatEpoc
   solution.position_covariance_e = fixed.P.topLeftCorner<3, 3>();
   solution.fixed = true;
   return solution;
-}
-
-std::vector<FixedPair> IntegerHold::agreed(const FixedSolution& fixed) {
-  constexpr int kEnough = 3;  // epochs
-  std::map<Unknown, Candidate> next;
-  std::map<Unknown, double> offsets;  // of each reference: its value relative to the reference of its group at that time
-  for (const FixedPair& p : fixed.pairs) {
-    const auto reference = candidates_.find(p.reference), then = candidates_.find(p.ambiguity);
-    if (reference != candidates_.end())
-      offsets.emplace(p.reference, reference->second.value);
-    else if (then != candidates_.end())
-      offsets.emplace(p.reference, then->second.value - p.integer);
-    next.emplace(p.reference, Candidate{0.0, reference == candidates_.end() ? 1 : reference->second.epochs + 1});
-  }
-  for (const FixedPair& p : fixed.pairs) {
-    const auto then = candidates_.find(p.ambiguity);
-    const auto offset = offsets.find(p.reference);
-    const bool same = then != candidates_.end() && offset != offsets.end() && then->second.value - offset->second == p.integer;
-    next[p.ambiguity] = {p.integer, same ? then->second.epochs + 1 : 1};
-  }
-  candidates_ = std::move(next);
-  std::vector<FixedPair> pairs = fixed.pairs;
-  std::erase_if(pairs, [&](const FixedPair& p) {
-    return candidates_.at(p.ambiguity).epochs < kEnough || candidates_.at(p.reference).epochs < kEnough;
-  });
-  return pairs;
-}
-
-HeldIntegers held(const std::vector<FixedPair>& pairs, const RelativeState& state) {
-  constexpr double kSd = 0.01;  // cycles: by which phase multipath may still change held ambiguities
-  const auto rows = static_cast<Eigen::Index>(pairs.size());
-  HeldIntegers h{Eigen::MatrixXd::Zero(rows, state.size()), Eigen::VectorXd(rows)};
-  for (Eigen::Index row = 0; row < rows; ++row) {
-    const FixedPair& p = pairs[static_cast<std::size_t>(row)];
-    const Eigen::Index ambiguity = state.index(p.ambiguity), reference = state.index(p.reference);
-    h.H(row, ambiguity) = 1.0 / kSd;
-    h.H(row, reference) = -1.0 / kSd;
-    h.nu(row) = (p.integer - (state.x(ambiguity) - state.x(reference))) / kSd;
-  }
-  return h;
 }
 
 }  // namespace coast::carrier

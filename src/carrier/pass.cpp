@@ -99,16 +99,26 @@ bool badly_placed(double pdop, const Eigen::Matrix3d& covariance_e) {
   return pdop > kMostPdop || !(covariance_e.trace() < kMostSd * kMostSd);
 }
 
-PpkEpoch solve(const DifferenceEpoch& epoch, const PpkOptions& options, RelativeFilter& filter, AmbiguityFixing& fixing,
-               IntegerHold& hold) {
+/// What is carried from epoch to epoch.
+struct PassState {
+  RelativeFilter filter;
+  AmbiguityFixing fixing;
+  IntegerHold hold;
+};
+
+PpkEpoch solve(const DifferenceEpoch& epoch, const PpkOptions& options, const std::vector<FixedPair>& known, PassState& pass,
+               std::vector<FixedPair>& integers, std::vector<Unknown>& restarted) {
+  RelativeFilter& filter = pass.filter;
   PpkEpoch solved = alone(epoch);
-  const FloatEpoch updated = filter.step(epoch);
+  const FloatEpoch updated = filter.step(epoch, known);
+  restarted = updated.restarted;
   solved.residuals = updated.left_out;
   solved.shortfall = updated.shortfall;
   if (!updated.updated) return solved;
   const RelativeState& state = filter.state();
   FixedSolution fixed;
-  if (options.fixing.wanted) fixed = fixing.fix(epoch, updated, state);
+  if (options.fixing.wanted) fixed = pass.fixing.fix(epoch, updated, state, known);
+  integers = fixed.pairs;
   solved.shortfall = fixed.shortfall;
   solved.ratio = fixed.ratio;
   solved.success_rate = fixed.success_rate;
@@ -125,24 +135,25 @@ PpkEpoch solve(const DifferenceEpoch& epoch, const PpkOptions& options, Relative
   solved.covariance_e += air_covariance(satellites, state.x.head<3>(), epoch, options);
   add_residuals(epoch, updated, x - (state.x - updated.step), fixed, solved);
   if (options.fixing.hold && fixed.fixed) {
-    const HeldIntegers integers = held(hold.agreed(fixed), state);
-    if (integers.nu.size() > 0) filter.absorb(integers.H, integers.nu);
+    const HeldIntegers agreed = held(pass.hold.agreed(fixed.pairs), state);
+    if (agreed.nu.size() > 0) filter.absorb(agreed.H, agreed.nu);
   }
   return solved;
 }
 
 }  // namespace
 
-std::vector<PpkEpoch> solve_pass(const std::vector<DifferenceEpoch>& epochs, const PpkOptions& options, double interval,
-                                 bool backward, const std::function<void(double)>& progress) {
-  std::vector<PpkEpoch> solved(epochs.size());
-  RelativeFilter filter(options, interval);
-  AmbiguityFixing fixing(options.fixing);
-  IntegerHold hold;
-  for (std::size_t k = 0; k < epochs.size(); ++k) {
-    const std::size_t i = backward ? epochs.size() - 1 - k : k;
-    solved[i] = solve(epochs[i], options, filter, fixing, hold);
-    if (progress) progress(static_cast<double>(k + 1) / static_cast<double>(epochs.size()));
+Pass solve_pass(const std::vector<DifferenceEpoch>& epochs, const PpkOptions& options, double interval, bool backward,
+                const KnownIntegers& known, const std::function<void(double)>& progress) {
+  const std::size_t n = epochs.size();
+  Pass solved{std::vector<PpkEpoch>(n),
+              {std::vector<std::vector<FixedPair>>(n), std::vector<std::vector<Unknown>>(n)}};
+  PassState pass{RelativeFilter(options, interval), AmbiguityFixing(options.fixing), {}};
+  for (std::size_t k = 0; k < n; ++k) {
+    const std::size_t i = backward ? n - 1 - k : k;
+    solved.epochs[i] = solve(epochs[i], options, known.of(epochs[i]), pass, solved.ambiguities.fixed[i],
+                             solved.ambiguities.restarted[i]);
+    if (progress) progress(static_cast<double>(k + 1) / static_cast<double>(n));
   }
   return solved;
 }

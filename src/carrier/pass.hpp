@@ -2,13 +2,19 @@
 // One pass through the epochs of a mission. Private to the room.
 
 #include "coast/carrier/ppk.hpp"
+#include "known_integers.hpp"
 
 namespace coast::carrier {
 
+struct Pass {
+  std::vector<PpkEpoch> epochs;
+  AmbiguityHistory ambiguities;
+};
+
 /// In time order or in reverse; the result is in time order.
 /// @param options  with `air` and `noise` settled  @param interval  of the rover, s
-std::vector<PpkEpoch> solve_pass(const std::vector<DifferenceEpoch>& epochs, const PpkOptions& options, double interval,
-                                 bool backward, const std::function<void(double)>& progress);
+Pass solve_pass(const std::vector<DifferenceEpoch>& epochs, const PpkOptions& options, double interval, bool backward,
+                const KnownIntegers& known, const std::function<void(double)>& progress);
 
 /// Noise estimated from the residuals of a pass: for phases from those with integers, leaving three unknowns and the clocks;
 /// for codes from theirs relative to these positions, and from their correlation in time.

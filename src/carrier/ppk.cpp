@@ -111,17 +111,25 @@ PpkSolution solve_ppk(const record::ObservationRecording& rover, const record::O
   if (!options.air) settled.air = air_states(epochs, options.differences.air.ionosphere_free);
   const bool combined = options.order == PassOrder::kCombined;
   const bool backward = options.order == PassOrder::kBackward;
-  Stages stages(progress, (options.noise ? 0 : 1) + (combined ? 2 : 1));
+  Stages stages(progress, (options.noise ? 0 : 1) + (combined ? 4 : 1));
   if (!options.noise) {
     constexpr NoiseScale kLenient{1.5, 2.0, 1.0};  // so that noise is not considered an outlier before it is known
     settled.noise = kLenient;
-    settled.noise = estimate_noise(solve_pass(epochs, settled, solution.interval_s, backward, stages.next()), *settled.noise);
+    settled.noise = estimate_noise(solve_pass(epochs, settled, solution.interval_s, backward, {}, stages.next()).epochs, *settled.noise);
   }
   solution.noise = *settled.noise;
   solution.air = *settled.air;
-  solution.epochs = solve_pass(epochs, settled, solution.interval_s, backward, stages.next());
-  if (combined)
-    solution.epochs = combine(solution.epochs, solve_pass(epochs, settled, solution.interval_s, true, stages.next()));
+  const auto pass = [&](bool in_reverse, const KnownIntegers& known) {
+    return solve_pass(epochs, settled, solution.interval_s, in_reverse, known, stages.next());
+  };
+  if (combined) {
+    Pass there = pass(false, {}), back = pass(true, {});
+    split_arcs(epochs, there.ambiguities, back.ambiguities);
+    const KnownIntegers known(there.ambiguities, back.ambiguities);
+    solution.epochs = combine(pass(false, known).epochs, pass(true, known).epochs);
+  } else {
+    solution.epochs = pass(backward, {}).epochs;
+  }
   add_phase_velocities(epochs, solution.noise, options.differences, solution.epochs);
   if (!options.noise) solution.noise.rate = estimate_rate_noise(epochs, solution.epochs, options.differences);
   solution.differences = std::move(epochs);

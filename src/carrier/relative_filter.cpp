@@ -95,7 +95,7 @@ RelativeFilter::RelativeFilter(const PpkOptions& options, double interval) : opt
   if (options.noise) weighting_.noise = *options.noise;
 }
 
-FloatEpoch RelativeFilter::step(const DifferenceEpoch& epoch) {
+FloatEpoch RelativeFilter::step(const DifferenceEpoch& epoch, const std::vector<FixedPair>& known) {
   FloatEpoch result;
   const double dt = started_ ? std::abs(epoch.t - last_) : 0.0;
   if (!epoch.age_s) {
@@ -106,7 +106,7 @@ FloatEpoch RelativeFilter::step(const DifferenceEpoch& epoch) {
     result.shortfall = Shortfall::kNoPosition;
     return result;
   }
-  return step_with_position(epoch, dt);
+  return step_with_position(epoch, dt, known);
 }
 
 FloatEpoch RelativeFilter::step_from(RelativeState prior, const DifferenceEpoch& epoch) {
@@ -117,13 +117,13 @@ FloatEpoch RelativeFilter::step_from(RelativeState prior, const DifferenceEpoch&
       const bool resumed = seen_.try_emplace(unknown, started_ ? last_ : epoch.t).second;
       if (resumed && unknown.kind == Kind::kAmbiguity) weighting_.known.insert(unknown);
     }
-  if (epoch.age_s) return step_with_position(epoch, dt);
+  if (epoch.age_s) return step_with_position(epoch, dt, {});
   FloatEpoch result;
   result.shortfall = Shortfall::kNoBase;
   return result;
 }
 
-FloatEpoch RelativeFilter::step_with_position(const DifferenceEpoch& epoch, double dt) {
+FloatEpoch RelativeFilter::step_with_position(const DifferenceEpoch& epoch, double dt, const std::vector<FixedPair>& known) {
   FloatEpoch result;
   forget_unseen(epoch);
   predict_ambiguities(epoch, dt);
@@ -131,6 +131,7 @@ FloatEpoch RelativeFilter::step_with_position(const DifferenceEpoch& epoch, doub
   const Eigen::Vector3d baseline_e = state_.x.head<3>() - epoch.r_base_e;
   if (air.zenith_delay) predict_zenith_delay(baseline_e, epoch.r_base_e.normalized(), dt);
   if (air.ionosphere) predict_ionosphere(epoch, baseline_e.norm(), dt);
+  absorb_new(known);
   last_ = epoch.t;
   started_ = true;
   update(epoch, result);
@@ -221,6 +222,18 @@ void RelativeFilter::add_inter_frequency_bias(const BandDifference& band) {
   if (glonass_channel(band.band, band.frequency) != 0.0 && state_.index(unknown) < 0) state_.add(unknown, 0.0, kSd * kSd);
 }
 
+/// Before the update, so that the phases and codes of the epoch are tested against them.
+void RelativeFilter::absorb_new(std::vector<FixedPair> known) {
+  constexpr double kHeld = 0.02;  // cycles: the state contains it already
+  std::erase_if(known, [&](const FixedPair& p) {
+    const Eigen::Index a = state_.index(p.ambiguity), r = state_.index(p.reference);
+    return a < 0 || r < 0 || state_.P(a, a) + state_.P(r, r) - 2.0 * state_.P(a, r) < kHeld * kHeld;
+  });
+  if (known.empty()) return;
+  const HeldIntegers integers = held(known, state_);
+  absorb(integers.H, integers.nu);
+}
+
 void RelativeFilter::start_anew(const SatelliteDifference& satellite, const BandDifference& band) {
   const Unknown unknown = ambiguity_of(satellite, band);
   const Eigen::Index i = state_.index(unknown);
@@ -254,8 +267,11 @@ void RelativeFilter::update(const DifferenceEpoch& epoch, FloatEpoch& result) {
     if (row.observable != Observable::kRate)
       result.left_out.push_back(left_out(epoch, row, result.dd.residual(static_cast<Eigen::Index>(*worst))));
     out.insert({row.satellite, row.band, row.observable});
-    if (row.observable == Observable::kPhase)
-      start_anew(epoch.satellites[row.satellite], epoch.satellites[row.satellite].bands[row.band]);
+    if (row.observable == Observable::kPhase) {
+      const SatelliteDifference& satellite = epoch.satellites[row.satellite];
+      result.restarted.push_back(ambiguity_of(satellite, satellite.bands[row.band]));
+      start_anew(satellite, satellite.bands[row.band]);
+    }
   }
 }
 

@@ -5,6 +5,7 @@
 
 #include "coast/carrier/ppk.hpp"
 #include "double_differences.hpp"
+#include "known_integers.hpp"
 
 namespace coast::carrier {
 
@@ -17,6 +18,7 @@ struct FloatEpoch {
   double nis = 0.0;      ///< normalised innovations squared
   Eigen::VectorXd step;  ///< of the state, by the update
   std::vector<SignalResidual> left_out;
+  std::vector<Unknown> restarted;  ///< ambiguities that the phases contradict
   Shortfall shortfall = Shortfall::kNone;
 };
 
@@ -39,7 +41,8 @@ class RelativeFilter {
   static RelativeFilter coupled(const PpkOptions& options, double interval);
 
   /// Epochs in time order, or all in reverse time order.
-  FloatEpoch step(const DifferenceEpoch& epoch);
+  /// @param known  integers of phases of this epoch
+  FloatEpoch step(const DifferenceEpoch& epoch, const std::vector<FixedPair>& known = {});
   /// The same with an external prior of the rover: `prior` replaces this filter's own state.
   FloatEpoch step_from(RelativeState prior, const DifferenceEpoch& epoch);
   /// Applies further measurements of unit variance: v = H (truth - state) + noise.
@@ -48,7 +51,8 @@ class RelativeFilter {
   [[nodiscard]] std::vector<StateChange> take_changes() { return state_.take_changes(); }
 
  private:
-  FloatEpoch step_with_position(const DifferenceEpoch& epoch, double dt);
+  FloatEpoch step_with_position(const DifferenceEpoch& epoch, double dt, const std::vector<FixedPair>& known);
+  void absorb_new(std::vector<FixedPair> known);
   bool predict_position(const DifferenceEpoch& epoch, double dt);
   void forget_unseen(const DifferenceEpoch& epoch);
   void predict_ambiguities(const DifferenceEpoch& epoch, double dt);
