@@ -142,6 +142,13 @@ std::vector<Fixable> among(std::vector<Fixable> set, const std::vector<FixedPair
   return set;
 }
 
+/// Those of satellites none of whose codes was left out: a reflection is late in code and phase.
+std::vector<Fixable> with_good_codes(std::vector<Fixable> set, const FloatEpoch& updated) {
+  for (const SignalResidual& r : updated.left_out)
+    if (!r.phase) set = without(set, r.satellite);
+  return set;
+}
+
 /// Partial fixing. At least half of the ambiguities are kept: few integers that seem significant are often wrong.
 class PartialFixing {
  public:
@@ -150,11 +157,15 @@ class PartialFixing {
 
   /// All; else without those left float in the previous epoch; else, if the integers are too uncertain, without the least
   /// certain, if they are not significant, without one satellite, tried in turn, or without the lowest.
-  std::optional<Attempt> run(const std::vector<Satellite>& without_last, const std::vector<Fixable>& known) {
+  std::optional<Attempt> run(const std::vector<Satellite>& without_last, const std::vector<Fixable>& known,
+                             const std::vector<Fixable>& trusted) {
     if (!best_ || done()) return best_;
     const Attempt whole = *best_;
-    if (!known.empty()) consider(known);
-    if (done()) return best_;
+    for (const std::vector<Fixable>& likely : {known, trusted}) {
+      if (likely.empty() || likely.size() == all_.size()) continue;
+      consider(likely);
+      if (done()) return best_;
+    }
     std::vector<Fixable> set = all_;
     for (const Satellite satellite : without_last) set = without(set, satellite);
     if (set.size() < all_.size()) consider(set);
@@ -221,7 +232,7 @@ FixedSolution AmbiguityFixing::fix(const DifferenceEpoch& epoch, const FloatEpoc
   std::ranges::copy_if(all, std::back_inserter(glonass),
                        [](const Fixable& f) { return f.satellite.system == SatelliteSystem::kGlonass; });
   if (first.empty()) std::swap(first, glonass);
-  const std::optional<Attempt> best = PartialFixing(first, state, options_).run(without_, among(first, known, state));
+  const std::optional<Attempt> best = PartialFixing(first, state, options_).run(without_, among(first, known, state), with_good_codes(first, updated));
   if (!best) {
     solution.shortfall = Shortfall::kFewAmbiguities;
     return solution;

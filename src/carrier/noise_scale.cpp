@@ -36,11 +36,25 @@ Sums phases_of(const PpkEpoch& epoch) {
   return sums.freedom > 0.0 ? sums : Sums{};
 }
 
-Sums codes_of(const PpkEpoch& epoch) {
+/// Codes beyond this, in units of their sd, are reflections and not noise: four times the sd by the median.
+double largest_code(const std::vector<PpkEpoch>& epochs) {
+  constexpr double kMedian = 0.6745;  // of the magnitude of a unit normal
+  constexpr double kSigmas = 4.0;
+  std::vector<double> sizes;
+  for (const PpkEpoch& epoch : epochs)
+    for (const SignalResidual& r : epoch.residuals)
+      if (!r.phase && r.use != Use::kLeftOut) sizes.push_back(std::abs(r.residual / r.sd));
+  if (sizes.empty()) return 0.0;
+  const auto middle = sizes.begin() + static_cast<std::ptrdiff_t>(sizes.size() / 2);
+  std::ranges::nth_element(sizes, middle);
+  return kSigmas * *middle / kMedian;
+}
+
+Sums codes_of(const PpkEpoch& epoch, double largest) {
   Sums sums;
   std::set<std::pair<record::SatelliteSystem, char>> groups;
   for (const SignalResidual& r : epoch.residuals) {
-    if (r.phase || r.use == Use::kLeftOut) continue;
+    if (r.phase || r.use == Use::kLeftOut || std::abs(r.residual / r.sd) > largest) continue;
     groups.insert({r.satellite.system, r.band});
     sums.squares += r.residual / r.sd * r.residual / r.sd;
     sums.freedom += 1.0;
@@ -51,13 +65,14 @@ Sums codes_of(const PpkEpoch& epoch) {
 
 /// Ratio of the variance of a long average of code residuals to that of independent ones: 1 + 2 sum rho_k, over the
 /// lags before the correlation is lost in noise.
-double inflation(const std::vector<PpkEpoch>& epochs) {
+double inflation(const std::vector<PpkEpoch>& epochs, double largest) {
   constexpr std::size_t kLags = 60;
   constexpr double kLost = 0.1;
   std::map<std::pair<record::Satellite, char>, std::vector<std::pair<std::size_t, double>>> series;
   for (std::size_t i = 0; i < epochs.size(); ++i)
     for (const SignalResidual& r : epochs[i].residuals)
-      if (!r.phase && r.use != Use::kLeftOut) series[{r.satellite, r.band}].emplace_back(i, r.residual / r.sd);
+      if (!r.phase && r.use != Use::kLeftOut && std::abs(r.residual / r.sd) <= largest)
+        series[{r.satellite, r.band}].emplace_back(i, r.residual / r.sd);
   double squares = 0.0, count = 0.0;
   std::vector<double> products(kLags + 1, 0.0), pairs(kLags + 1, 0.0);
   for (const auto& [signal, values] : series)
@@ -83,16 +98,17 @@ double inflation(const std::vector<PpkEpoch>& epochs) {
 
 NoiseScale estimate_noise(const std::vector<PpkEpoch>& epochs, const NoiseScale& noise) {
   constexpr double kLeast = 0.03, kMost = 10.0;
+  const double largest = largest_code(epochs);
   Sums phases, codes;
   for (const PpkEpoch& epoch : epochs) {
-    const Sums phase = phases_of(epoch), code = codes_of(epoch);
+    const Sums phase = phases_of(epoch), code = codes_of(epoch, largest);
     phases.squares += phase.squares;
     phases.freedom += phase.freedom;
     codes.squares += code.squares;
     codes.freedom += code.freedom;
   }
   return {std::clamp(noise.phase * phases.scale(1.0), kLeast, kMost), std::clamp(noise.code * codes.scale(1.0), kLeast, kMost),
-          std::sqrt(inflation(epochs)), noise.rate};
+          std::sqrt(inflation(epochs, largest)), noise.rate, noise.displacement};
 }
 
 double estimate_rate_noise(const std::vector<DifferenceEpoch>& differences, const std::vector<PpkEpoch>& solved,

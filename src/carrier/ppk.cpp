@@ -3,8 +3,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cstdlib>
+#include <cstdio>
 
 #include "coast/record/error.hpp"
+#include "doppler_displacement.hpp"
 #include "pass.hpp"
 #include "phase_velocity.hpp"
 
@@ -115,7 +118,10 @@ PpkSolution solve_ppk(const record::ObservationRecording& rover, const record::O
   if (!options.noise) {
     constexpr NoiseScale kLenient{1.5, 2.0, 1.0};  // so that noise is not considered an outlier before it is known
     settled.noise = kLenient;
-    settled.noise = estimate_noise(solve_pass(epochs, settled, solution.interval_s, backward, {}, stages.next()).epochs, *settled.noise);
+    const std::vector<PpkEpoch> first = solve_pass(epochs, settled, solution.interval_s, backward, {}, stages.next()).epochs;
+    settled.noise = estimate_noise(first, *settled.noise);
+    settled.noise->displacement = displacement_noise(epochs, first);
+    if (getenv("DBG")) fprintf(stderr, "DBGdisp %f\n", settled.noise->displacement.value_or(-1));
   }
   solution.noise = *settled.noise;
   solution.air = *settled.air;
@@ -126,7 +132,9 @@ PpkSolution solve_ppk(const record::ObservationRecording& rover, const record::O
     Pass there = pass(false, {}), back = pass(true, {});
     split_arcs(epochs, there.ambiguities, back.ambiguities);
     const KnownIntegers known(there.ambiguities, back.ambiguities);
-    solution.epochs = combine(pass(false, known).epochs, pass(true, known).epochs);
+    const auto f2 = pass(false, known).epochs, b2 = pass(true, known).epochs;
+    solution.epochs = combine(f2, b2);
+    if (const char* d = getenv("DBGPASS")) solution.epochs = *d == '1' ? f2 : *d == '2' ? b2 : *d == '3' ? there.epochs : back.epochs;
   } else {
     solution.epochs = pass(backward, {}).epochs;
   }

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "coast/carrier/signals.hpp"
+#include "doppler_displacement.hpp"
 #include "receiver_track.hpp"
 
 namespace coast::carrier {
@@ -133,6 +134,7 @@ FloatEpoch RelativeFilter::step_with_position(const DifferenceEpoch& epoch, doub
   if (air.ionosphere) predict_ionosphere(epoch, baseline_e.norm(), dt);
   absorb_new(known);
   last_ = epoch.t;
+  last_velocity_ = epoch.alone ? epoch.alone->velocity : std::nullopt;
   started_ = true;
   update(epoch, result);
   return result;
@@ -142,7 +144,7 @@ bool RelativeFilter::predict_position(const DifferenceEpoch& epoch, double dt) {
   constexpr double kFastest = 50.0;  // m/s, if the displacement of the rover is otherwise unknown
   constexpr double kRoom = 3.0;      // times the sd of a single point with poor geometry
   const bool keeps = started_ && options_.motion == RoverMotion::kStatic;
-  if (keeps) return true;
+  if (keeps || move_by_doppler(epoch)) return true;
   if (!started_ && !epoch.alone) return false;
   double sd = kUnknownPosition;
   if (epoch.alone) {
@@ -152,6 +154,21 @@ bool RelativeFilter::predict_position(const DifferenceEpoch& epoch, double dt) {
     sd += kFastest * dt;
   }
   for (Eigen::Index i = 0; i < 3; ++i) state_.reset(i, state_.x(i), sd * sd);
+  return true;
+}
+
+/// Where all ambiguities begin anew the position goes on, so that wrong codes and reflections are seen as such.
+bool RelativeFilter::move_by_doppler(const DifferenceEpoch& epoch) {
+  constexpr double kLongest = 2.5;  // s
+  constexpr double kFar = 100.0;    // m from the single point: the state is wrong
+  const std::optional<double> factor = options_.noise->displacement;
+  const double dt = epoch.t - last_;
+  if (!factor || !started_ || !last_velocity_ || std::abs(dt) > kLongest || !epoch.alone || !epoch.alone->velocity) return false;
+  const DopplerDisplacement moved = doppler_displacement(*last_velocity_, *epoch.alone->velocity, dt);
+  const Eigen::Vector3d r_e = state_.x.head<3>() + moved.d_e;
+  if ((r_e - epoch.alone->r_e).norm() > kFar) return false;
+  state_.x.head<3>() = r_e;
+  state_.P.topLeftCorner<3, 3>() += *factor * *factor * moved.covariance_e;
   return true;
 }
 
@@ -243,8 +260,11 @@ void RelativeFilter::start_anew(const SatelliteDifference& satellite, const Band
 
 void RelativeFilter::update(const DifferenceEpoch& epoch, FloatEpoch& result) {
   LeftOut out;
+  // A code's error at one epoch is not larger for lasting, so codes are tested with the noise of one epoch.
+  Weighting of_one_epoch = weighting_;
+  of_one_epoch.noise.code_inflation = 1.0;
   for (;;) {
-    result.dd = double_differences(epoch, state_, out, options_.differences, weighting_);
+    result.dd = double_differences(epoch, state_, out, options_.differences, of_one_epoch);
     std::set<std::size_t> satellites;
     for (const Row& row : result.dd.rows) satellites.insert(row.satellite);
     if (satellites.size() < fewest_ || result.dd.empty()) {
@@ -260,7 +280,12 @@ void RelativeFilter::update(const DifferenceEpoch& epoch, FloatEpoch& result) {
     }
     const std::optional<std::size_t> worst = outlier(result.dd, in);
     if (!worst) {
-      apply(in, epoch, result);
+      if (weighting_.noise.code_inflation > 1.0) {
+        result.dd = double_differences(epoch, state_, out, options_.differences, weighting_);
+        apply(innovation_of(result.dd.B * result.dd.H, result.dd.B * result.dd.residual, state_), epoch, result);
+      } else {
+        apply(in, epoch, result);
+      }
       return;
     }
     const Row& row = result.dd.rows[*worst];

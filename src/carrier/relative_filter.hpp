@@ -54,6 +54,7 @@ class RelativeFilter {
   FloatEpoch step_with_position(const DifferenceEpoch& epoch, double dt, const std::vector<FixedPair>& known);
   void absorb_new(std::vector<FixedPair> known);
   bool predict_position(const DifferenceEpoch& epoch, double dt);
+  bool move_by_doppler(const DifferenceEpoch& epoch);
   void forget_unseen(const DifferenceEpoch& epoch);
   void predict_ambiguities(const DifferenceEpoch& epoch, double dt);
   void add_inter_frequency_bias(const BandDifference& band);
@@ -73,6 +74,7 @@ class RelativeFilter {
   RelativeState state_;
   bool started_ = false;
   geo::GpsTime last_;
+  std::optional<SinglePoint::Velocity> last_velocity_;
   std::map<Unknown, double> ionosphere_;  ///< stationary variance, m^2
   std::map<Unknown, geo::GpsTime> seen_;  ///< last, of ambiguities and ionospheric delays
 };

@@ -33,6 +33,8 @@ struct NoiseScale {
   /// give as much information as n epochs of a Gauss-Markov process.
   double code_inflation = 1.0;
   double rate = 1.0;  ///< of Doppler, relative to 2 cm/s at the zenith
+  /// Of the displacement between two epochs by Doppler, relative to its formal sd; absent: not used.
+  std::optional<double> displacement = {};
 };
 
 /// Differential atmospheric delays of rover and base, as states in addition to position and ambiguities.
