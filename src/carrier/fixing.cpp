@@ -250,8 +250,8 @@ FixedSolution AmbiguityFixing::fix(const DifferenceEpoch& epoch, const FloatEpoc
   std::erase_if(without_, [&](Satellite s) { return std::ranges::find(solution.satellites, s) != solution.satellites.end(); });
   // Because of inter-frequency biases, GLONASS's integers are uncertain until the others have fixed the position.
   if (const std::optional<Attempt> more = attempt(glonass, fixed); more && good(*more, options_)) take(*more, fixed, solution);
-  solution.x = fixed.x;
-  solution.position_covariance_e = fixed.P.topLeftCorner<3, 3>();
+  solution.x = std::move(fixed.x);
+  solution.P = std::move(fixed.P);
   solution.fixed = true;
   return solution;
 }

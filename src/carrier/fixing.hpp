@@ -8,7 +8,7 @@ namespace coast::carrier {
 struct FixedSolution {
   bool fixed = false;
   Eigen::VectorXd x;  ///< the state with the integers
-  Eigen::Matrix3d position_covariance_e = Eigen::Matrix3d::Zero();
+  Eigen::MatrixXd P;  ///< its covariance
   std::vector<record::Satellite> satellites;  ///< those with integers
   std::vector<FixedPair> pairs;
   int ambiguities = 0;

@@ -9,7 +9,7 @@
 #include <cmath>
 #include <limits>
 
-#include "fixing.hpp"
+#include "integer_position.hpp"
 
 namespace coast::carrier {
 
@@ -83,28 +83,6 @@ double pdop_of(const std::map<std::size_t, Direction>& satellites) {
   return covariance ? std::sqrt(covariance->trace()) : 0.0;
 }
 
-/// The same of the satellites that have integers, with a clock for each system: whether these alone determine the position.
-double integer_pdop(const DifferenceEpoch& epoch, const std::map<std::size_t, Direction>& satellites,
-                    const std::vector<record::Satellite>& with_integers) {
-  constexpr int kUnknowns = 3;
-  std::map<record::SatelliteSystem, std::vector<Eigen::Vector3d>> ways;
-  for (const auto& [index, direction] : satellites) {
-    const record::Satellite satellite = epoch.satellites[index].satellite;
-    if (std::ranges::find(with_integers, satellite) != with_integers.end())
-      ways[satellite.system].emplace_back(way_n(direction).head<3>());
-  }
-  Eigen::Matrix3d N = Eigen::Matrix3d::Zero();
-  int differences = 0;
-  for (const auto& [system, of] : ways) {
-    Eigen::Vector3d mean = Eigen::Vector3d::Zero();
-    for (const Eigen::Vector3d& way : of) mean += way / static_cast<double>(of.size());
-    for (const Eigen::Vector3d& way : of) N += (way - mean) * (way - mean).transpose();
-    differences += static_cast<int>(of.size()) - 1;
-  }
-  if (differences < kUnknowns) return std::numeric_limits<double>::infinity();
-  return std::sqrt(N.inverse().trace());
-}
-
 /// The difference of the atmosphere at both ends moves the position equally in all bands, so that residuals do not show it. If
 /// it is not estimated: effect of one range per satellite with an error of 0.7 mm per kilometre at the zenith.
 Eigen::Matrix3d air_covariance(const std::map<std::size_t, Direction>& satellites, const Eigen::Vector3d& r_e,
@@ -153,14 +131,28 @@ PpkEpoch solve(const DifferenceEpoch& epoch, const PpkOptions& options, const st
   const std::map<std::size_t, Direction> satellites = directions(updated);
   solved.satellites = static_cast<int>(satellites.size());
   solved.pdop = pdop_of(satellites);
-  const Eigen::VectorXd& x = fixed.fixed ? fixed.x : state.x;
-  solved.r_e = x.head<3>();
-  solved.covariance_e = fixed.fixed ? fixed.position_covariance_e : state.P.topLeftCorner<3, 3>().eval();
-  if (fixed.fixed && badly_placed(integer_pdop(epoch, satellites, fixed.satellites), solved.covariance_e)) solved.shortfall = Shortfall::kBadGeometry;
+  Eigen::VectorXd step = (fixed.fixed ? fixed.x : state.x) - (state.x - updated.step);
+  solved.covariance_e = (fixed.fixed ? fixed.P : state.P).topLeftCorner<3, 3>();
+  double pdop = solved.pdop;
+  if (fixed.fixed) {
+    if (const std::optional<IntegerPosition> alone = integer_position(epoch, updated, state, fixed)) {
+      pdop = alone->pdop;
+      if (!badly_placed(pdop, alone->covariance_e)) {
+        step = alone->step;
+        solved.covariance_e = alone->covariance_e;
+      }
+      std::erase_if(integers, [&](const FixedPair& pair) {
+        return std::ranges::any_of(alone->contradicted,
+                                   [&](const Unknown& u) { return u == pair.ambiguity || u == pair.reference; });
+      });
+    }
+    if (badly_placed(pdop, solved.covariance_e)) solved.shortfall = Shortfall::kBadGeometry;
+  }
+  solved.r_e = (state.x - updated.step + step).head<3>();
   const bool precise = fixed.fixed && solved.shortfall == Shortfall::kNone;
   solved.quality = precise ? record::FixQuality::kFixed : record::FixQuality::kFloat;
   solved.covariance_e += air_covariance(satellites, state.x.head<3>(), epoch, options);
-  add_residuals(epoch, updated, x - (state.x - updated.step), fixed, solved);
+  add_residuals(epoch, updated, step, fixed, solved);
   if (getenv("DBG")) {
     int nk = 0; for (auto& r : updated.dd.rows) nk += r.observable == Observable::kPhase;
     std::string lo; for (auto& r : updated.left_out) lo += fmt::format(" {}{}{}", record::to_string(r.satellite), r.band, r.phase ? "p" : "c");
