@@ -39,6 +39,14 @@ PpkEpoch weighted(const PpkEpoch& f, const PpkEpoch& b) {
   return both;
 }
 
+/// Integers that most epochs of their arcs agree on, and that this epoch confirms: a float solution that contradicts them has
+/// taken a reflection for a signal.
+bool confirmed(const PpkEpoch& epoch) {
+  constexpr int kEnough = 9;
+  constexpr double kRatio = 20.0;
+  return epoch.quality == FixQuality::kFixed && epoch.known_ambiguities >= kEnough && epoch.ratio >= kRatio;
+}
+
 PpkEpoch combine(const PpkEpoch& f, const PpkEpoch& b) {
   if (!has_baseline(f) || !has_baseline(b)) return has_baseline(b) ? b : f;
   const Eigen::Vector3d difference = f.r_e - b.r_e;
@@ -50,7 +58,8 @@ PpkEpoch combine(const PpkEpoch& f, const PpkEpoch& b) {
   // Multipath makes float errors temporarily twice their sigmas: they contradict a fix only beyond that.
   constexpr double kFloatVariance = 4.0;
   const double doubt_f = f_fixed || !b_fixed ? 1.0 : kFloatVariance, doubt_b = b_fixed || !f_fixed ? 1.0 : kFloatVariance;
-  if (!agree(difference, doubt_f * f.covariance_e + doubt_b * b.covariance_e))
+  const bool settled = f_fixed != b_fixed && confirmed(likelier);
+  if (!settled && !agree(difference, doubt_f * f.covariance_e + doubt_b * b.covariance_e))
     both = separated(likelier, difference);
   else
     both = f_fixed || b_fixed ? likelier : weighted(f, b);

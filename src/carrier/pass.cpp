@@ -104,6 +104,13 @@ bool badly_placed(double pdop, const Eigen::Matrix3d& covariance_e) {
   return pdop > kMostPdop || !(covariance_e.trace() < kMostSd * kMostSd);
 }
 
+int known_among(const std::vector<FixedPair>& fixed, const std::vector<FixedPair>& known) {
+  std::set<Unknown> of_known;
+  for (const FixedPair& p : known) of_known.insert({p.ambiguity, p.reference});
+  return static_cast<int>(std::ranges::count_if(
+      fixed, [&](const FixedPair& p) { return of_known.contains(p.ambiguity) && of_known.contains(p.reference); }));
+}
+
 /// What is carried from epoch to epoch.
 struct PassState {
   RelativeFilter filter;
@@ -128,6 +135,7 @@ PpkEpoch solve(const DifferenceEpoch& epoch, const PpkOptions& options, const st
   solved.ratio = fixed.ratio;
   solved.success_rate = fixed.success_rate;
   solved.fixed_ambiguities = fixed.ambiguities;
+  solved.known_ambiguities = known_among(fixed.pairs, known);
   const std::map<std::size_t, Direction> satellites = directions(updated);
   solved.satellites = static_cast<int>(satellites.size());
   solved.pdop = pdop_of(satellites);

@@ -93,6 +93,7 @@ struct PpkEpoch {
   std::optional<SinglePoint::Velocity> velocity;
   int satellites = 0;  ///< of the double differences; of the single point if there are none
   int fixed_ambiguities = 0;
+  int known_ambiguities = 0;  ///< of these, with the integer that the majority of all epochs of their arc has
   double ratio = 0.0;
   double success_rate = 0.0;
   double age_s = 0.0;
