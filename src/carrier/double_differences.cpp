@@ -37,13 +37,6 @@ struct Candidate {
 
 using Kind = Unknown::Kind;
 
-/// Sd of a code over the nominal sd of its phase.
-double code_scale(const SatelliteDifference& satellite, const BandDifference& band, const Weighting& weighting) {
-  const Unknown ambiguity{Kind::kAmbiguity, satellite.satellite, band.band, band.arc};
-  const double inflation = weighting.known.contains(ambiguity) ? weighting.noise.code_inflation : 1.0;
-  return kCodeToPhase * weighting.noise.code * inflation;
-}
-
 double rate_variance(double elevation) {
   constexpr double kZenith = 0.02;  // m/s
   const double sd = kZenith / std::max(std::sin(elevation), 0.1);
@@ -95,7 +88,7 @@ class Expectation {
       if (options_.rover_antenna)
         expected += phase_centre_correction(*options_.rover_antenna, satellite.satellite.system, band.band, at_antenna);
       const bool started = state_.index({Kind::kAmbiguity, satellite.satellite, band.band, band.arc}) >= 0;  // from a code
-      if (band.code) candidate(Observable::kCode, code_scale(satellite, band, weighting_) * sd, *band.code - expected);
+      if (band.code) candidate(Observable::kCode, kCodeToPhase * weighting_.noise.code * sd, *band.code - expected);
       if (band.phase && started)
         candidate(Observable::kPhase, weighting_.noise.phase * sd, *band.phase - expected - wound * band.wavelength());
       if (band.rate && v_e_)
@@ -180,6 +173,25 @@ Eigen::MatrixXd complement(const Eigen::MatrixXd& columns) {
   return Q.rightCols(columns.rows() - qr.rank()).transpose();
 }
 
+/// The rows' differences, and B.
+void eliminate_clocks(DoubleDifferences& dd, const DifferenceEpoch& epoch, const Weighting& weighting) {
+  const std::span<const Row> rows(dd.rows);
+  std::vector<Eigen::MatrixXd> complements;
+  Eigen::Index differences = 0;
+  for (DoubleDifferences::Block& b : dd.blocks) {
+    const std::span<const Row> group = rows.subspan(static_cast<std::size_t>(b.first_row), static_cast<std::size_t>(b.rows));
+    complements.push_back(complement(nuisances(group, epoch, weighting)));
+    b.first_difference = differences;
+    b.differences = complements.back().rows();
+    differences += b.differences;
+  }
+  dd.B.setZero(differences, static_cast<Eigen::Index>(rows.size()));
+  for (std::size_t k = 0; k < complements.size(); ++k) {
+    const DoubleDifferences::Block& b = dd.blocks[k];
+    dd.B.block(b.first_difference, b.first_row, b.differences, b.rows) = complements[k];
+  }
+}
+
 }  // namespace
 
 double nominal_phase_sd(double rover_elevation, double base_elevation, const BandDifference& band) {
@@ -197,23 +209,38 @@ DoubleDifferences double_differences(const DifferenceEpoch& epoch, const Relativ
     dd.rows.push_back(all[static_cast<std::size_t>(i)].row);
     fill(all[static_cast<std::size_t>(i)], epoch, state, i, dd);
   }
-  std::vector<std::pair<Eigen::Index, Eigen::MatrixXd>> blocks;
-  const std::span<const Row> rows(dd.rows);
-  Eigen::Index differences = 0;
   for (Eigen::Index begin = 0, end = 0; begin < n; begin = end) {
     while (end < n && all[static_cast<std::size_t>(end)].group == all[static_cast<std::size_t>(begin)].group) ++end;
-    blocks.emplace_back(
-        begin, complement(nuisances(rows.subspan(static_cast<std::size_t>(begin), static_cast<std::size_t>(end - begin)), epoch,
-                                    weighting)));
-    differences += blocks.back().second.rows();
+    dd.blocks.push_back({begin, end - begin, 0, 0});
   }
-  dd.B.setZero(differences, n);
-  Eigen::Index row = 0;
-  for (const auto& [begin, block] : blocks) {
-    dd.B.block(row, begin, block.rows(), block.cols()) = block;
-    row += block.rows();
-  }
+  eliminate_clocks(dd, epoch, weighting);
   return dd;
+}
+
+void inflate_codes(DoubleDifferences& dd, const DifferenceEpoch& epoch, const Weighting& weighting) {
+  const double inflation = weighting.noise.code_inflation;
+  bool changed = false;
+  for (std::size_t i = 0; i < dd.rows.size(); ++i) {
+    Row& row = dd.rows[i];
+    const SatelliteDifference& satellite = epoch.satellites[row.satellite];
+    const BandDifference& band = satellite.bands[row.band];
+    if (row.observable != Observable::kCode ||
+        !weighting.known.contains({Kind::kAmbiguity, satellite.satellite, band.band, band.arc}))
+      continue;
+    row.sd *= inflation;
+    dd.H.row(static_cast<Eigen::Index>(i)) /= inflation;
+    dd.residual(static_cast<Eigen::Index>(i)) /= inflation;
+    changed = true;
+  }
+  if (changed) eliminate_clocks(dd, epoch, weighting);
+}
+
+Eigen::MatrixXd DoubleDifferences::without_clocks(const Eigen::MatrixXd& M) const {
+  Eigen::MatrixXd product(B.rows(), M.cols());
+  for (const Block& b : blocks)
+    product.middleRows(b.first_difference, b.differences).noalias() =
+        B.block(b.first_difference, b.first_row, b.differences, b.rows) * M.middleRows(b.first_row, b.rows);
+  return product;
 }
 
 }  // namespace coast::carrier

@@ -29,9 +29,16 @@ struct DoubleDifferences {
   std::vector<Row> rows;     ///< by group
   Eigen::MatrixXd H;         ///< rows x state
   Eigen::VectorXd residual;  ///< observed minus modelled
-  Eigen::MatrixXd B;         ///< differences x rows
+  Eigen::MatrixXd B;         ///< differences x rows, by blocks
+  struct Block {
+    Eigen::Index first_row = 0, rows = 0;                ///< of the group
+    Eigen::Index first_difference = 0, differences = 0;  ///< of the group
+  };
+  std::vector<Block> blocks;
 
   [[nodiscard]] bool empty() const { return B.rows() == 0; }
+  /// B times M, block by block.
+  [[nodiscard]] Eigen::MatrixXd without_clocks(const Eigen::MatrixXd& M) const;
 };
 
 /// Which rows of the epoch are not used: (satellite, band, observable).
@@ -46,8 +53,11 @@ struct Weighting {
   bool one_phase_clock = false;
 };
 
-/// Includes rates if the state has a velocity.
+/// Includes rates if the state has a velocity. The codes have the noise of one epoch.
 DoubleDifferences double_differences(const DifferenceEpoch& epoch, const RelativeState& state, const LeftOut& left_out,
                                      const DifferenceOptions& options, const Weighting& weighting);
+
+/// Weighs the codes as the filter does, which averages them over many epochs (NoiseScale::code_inflation).
+void inflate_codes(DoubleDifferences& dd, const DifferenceEpoch& epoch, const Weighting& weighting);
 
 }  // namespace coast::carrier

@@ -38,41 +38,37 @@ std::vector<Fixable> fixable(const DifferenceEpoch& epoch, const FloatEpoch& upd
   return all;
 }
 
+/// An ambiguity and its reference, as indices of the state.
+struct Pair {
+  Eigen::Index ambiguity = 0, reference = 0;
+  Satellite satellite;
+};
+
 /// Double differences of a set of ambiguities: relative to the highest satellite of each system and band.
-Eigen::MatrixXd differencing(const std::vector<Fixable>& set, Eigen::Index states) {
+std::vector<Pair> differencing(const std::vector<Fixable>& set) {
   std::map<std::pair<SatelliteSystem, char>, std::vector<const Fixable*>> groups;
   for (const Fixable& f : set) groups[{f.satellite.system, f.band}].push_back(&f);
-  Eigen::MatrixXd D = Eigen::MatrixXd::Zero(static_cast<Eigen::Index>(set.size() - groups.size()), states);
-  Eigen::Index row = 0;
+  std::vector<Pair> pairs;
   for (const auto& [group, members] : groups) {
     const Fixable* reference = *std::ranges::max_element(members, {}, [](const Fixable* f) { return f->elevation; });
-    for (const Fixable* f : members) {
-      if (f == reference) continue;
-      D(row, f->index) = 1.0;
-      D(row, reference->index) = -1.0;
-      ++row;
-    }
-  }
-  return D;
-}
-
-/// The rows of D as named pairs.
-std::vector<FixedPair> pairs_of(const Eigen::MatrixXd& D, const RelativeState& state, const Eigen::VectorXd& integers) {
-  std::vector<FixedPair> pairs;
-  for (Eigen::Index row = 0; row < D.rows(); ++row) {
-    Eigen::Index ambiguity = 0, reference = 0;
-    D.row(row).maxCoeff(&ambiguity);
-    D.row(row).minCoeff(&reference);
-    const auto name = [&](Eigen::Index i) { return state.unknowns()[static_cast<std::size_t>(i)]; };
-    pairs.push_back({name(ambiguity), name(reference), integers(row)});
+    for (const Fixable* f : members)
+      if (f != reference) pairs.push_back({f->index, reference->index, f->satellite});
   }
   return pairs;
+}
+
+std::vector<FixedPair> named(const std::vector<Pair>& pairs, const RelativeState& state, const Eigen::VectorXd& integers) {
+  std::vector<FixedPair> names;
+  const auto name = [&](Eigen::Index i) { return state.unknowns()[static_cast<std::size_t>(i)]; };
+  for (std::size_t k = 0; k < pairs.size(); ++k)
+    names.push_back({name(pairs[k].ambiguity), name(pairs[k].reference), integers(static_cast<Eigen::Index>(k))});
+  return names;
 }
 
 /// One set of ambiguities with its best integers.
 struct Attempt {
   std::vector<Fixable> set;
-  Eigen::MatrixXd D;
+  std::vector<Pair> pairs;
   Eigen::VectorXd a;
   Eigen::MatrixXd PDt;
   Eigen::MatrixXd Q;
@@ -84,11 +80,21 @@ std::optional<Attempt> attempt(const std::vector<Fixable>& set, const RelativeSt
   constexpr Eigen::Index kFewest = 4;
   Attempt t;
   t.set = set;
-  t.D = differencing(set, state.size());
-  if (t.D.rows() < kFewest) return std::nullopt;
-  t.a = t.D * state.x;
-  t.PDt = state.P * t.D.transpose();
-  t.Q = t.D * t.PDt;
+  t.pairs = differencing(set);
+  const auto n = static_cast<Eigen::Index>(t.pairs.size());
+  if (n < kFewest) return std::nullopt;
+  t.a.resize(n);
+  t.PDt.resize(state.size(), n);
+  t.Q.resize(n, n);
+  for (Eigen::Index k = 0; k < n; ++k) {
+    const Pair& p = t.pairs[static_cast<std::size_t>(k)];
+    t.a(k) = state.x(p.ambiguity) - state.x(p.reference);
+    t.PDt.col(k) = state.P.col(p.ambiguity) - state.P.col(p.reference);
+  }
+  for (Eigen::Index k = 0; k < n; ++k) {
+    const Pair& p = t.pairs[static_cast<std::size_t>(k)];
+    t.Q.row(k) = t.PDt.row(p.ambiguity) - t.PDt.row(p.reference);
+  }
   t.Q = 0.5 * (t.Q + t.Q.transpose()).eval();
   try {
     t.integers = integer_least_squares(t.a, t.Q);
@@ -118,9 +124,10 @@ std::vector<Fixable> without(std::vector<Fixable> set, Satellite satellite) {
 /// Satellites, the one with the least certain ambiguities first.
 std::vector<Satellite> by_uncertainty(const Attempt& t) {
   std::map<Satellite, double> variances;
-  for (Eigen::Index i = 0; i < t.D.rows(); ++i)
-    for (const Fixable& f : t.set)
-      if (t.D(i, f.index) > 0.0) variances[f.satellite] = std::max(variances[f.satellite], t.Q(i, i));
+  for (std::size_t k = 0; k < t.pairs.size(); ++k) {
+    double& variance = variances[t.pairs[k].satellite];
+    variance = std::max(variance, t.Q(static_cast<Eigen::Index>(k), static_cast<Eigen::Index>(k)));
+  }
   std::vector<Satellite> satellites = satellites_of(t.set);
   std::ranges::sort(satellites, std::greater{}, [&](Satellite s) { return variances[s]; });
   return satellites;
@@ -213,7 +220,7 @@ class PartialFixing {
 /// The state conditioned on these integers, and the integers.
 void take(const Attempt& t, RelativeState& state, FixedSolution& solution) {
   const Eigen::LDLT<Eigen::MatrixXd> Q(t.Q);
-  const std::vector<FixedPair> pairs = pairs_of(t.D, state, t.integers.candidates.col(0));
+  const std::vector<FixedPair> pairs = named(t.pairs, state, t.integers.candidates.col(0));
   state.x -= t.PDt * Q.solve(t.a - t.integers.candidates.col(0));
   state.P -= t.PDt * Q.solve(t.PDt.transpose());
   solution.pairs.insert(solution.pairs.end(), pairs.begin(), pairs.end());

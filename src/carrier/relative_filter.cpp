@@ -1,6 +1,7 @@
 #include "relative_filter.hpp"
 
 #include <Eigen/Cholesky>
+#include <Eigen/SparseCore>
 #include <algorithm>
 #include <cmath>
 
@@ -52,23 +53,50 @@ Innovation innovation_of(Eigen::MatrixXd H, Eigen::VectorXd v, const RelativeSta
   return in;
 }
 
-/// The row whose error would explain the innovations best (Teunissen 1990: w-test); none if all are plausible.
-std::optional<std::size_t> outlier(const DoubleDifferences& dd, const Innovation& in) {
+/// Of the differences. A row has a handful of unknowns, and the rows of a group have no others but its own ambiguities.
+Innovation innovation_of(const DoubleDifferences& dd, const RelativeState& state) {
+  const Eigen::SparseMatrix<double, Eigen::RowMajor> H = dd.H.sparseView();
+  Innovation in;
+  in.H = dd.without_clocks(dd.H);
+  in.v = dd.without_clocks(dd.residual);
+  const Eigen::MatrixXd HP = dd.without_clocks(H * state.P);
+  in.PHt = HP.transpose();
+  Eigen::MatrixXd S = dd.without_clocks(H * in.PHt);
+  S.diagonal().array() += 1.0;
+  in.S.compute(S);
+  return in;
+}
+
+/// Rows whose errors explain the innovations best (Teunissen 1990: w-test), the likeliest first, each given those before it.
+std::vector<std::size_t> outliers(const DoubleDifferences& dd, const Innovation& in) {
   constexpr double kSuspicious = 4.5;   // sd
   constexpr double kControlled = 0.01;  // of a variance of one: below, no other row checks this one
-  const Eigen::VectorXd y = in.S.matrixL().solve(in.v);
   const Eigen::MatrixXd Z = in.S.matrixL().solve(dd.B);
-  std::optional<std::size_t> worst;
-  double largest = kSuspicious;
-  for (Eigen::Index i = 0; i < Z.cols(); ++i) {
-    const double squared = Z.col(i).squaredNorm();
-    if (squared < kControlled) continue;
-    const double w = std::abs(Z.col(i).dot(y)) / std::sqrt(squared);
-    if (w < largest) continue;
-    largest = w;
-    worst = static_cast<std::size_t>(i);
+  Eigen::VectorXd g = Z.transpose() * in.S.matrixL().solve(in.v);
+  Eigen::VectorXd squares = Z.colwise().squaredNorm();
+  Eigen::MatrixXd removed(Z.cols(), 0);  // columns whose products are taken from Z^T Z
+  std::vector<std::size_t> all;
+  for (;;) {
+    Eigen::Index worst = -1;
+    double largest = kSuspicious;
+    for (Eigen::Index i = 0; i < Z.cols(); ++i) {
+      if (squares(i) < kControlled) continue;
+      const double w = std::abs(g(i)) / std::sqrt(squares(i));
+      if (w < largest) continue;
+      largest = w;
+      worst = i;
+    }
+    if (worst < 0) return all;
+    all.push_back(static_cast<std::size_t>(worst));
+    // To leave a row out is to estimate its error: one step of Gauss's elimination.
+    const Eigen::VectorXd column =
+        (Z.transpose() * Z.col(worst) - removed * removed.row(worst).transpose()) / std::sqrt(squares(worst));
+    g -= column * (g(worst) / std::sqrt(squares(worst)));
+    squares -= column.cwiseAbs2();
+    squares(worst) = 0.0;
+    removed.conservativeResize(Eigen::NoChange, removed.cols() + 1);
+    removed.rightCols(1) = column;
   }
-  return worst;
 }
 
 SignalResidual left_out(const DifferenceEpoch& epoch, const Row& row, double residual) {
@@ -260,44 +288,39 @@ void RelativeFilter::start_anew(const SatelliteDifference& satellite, const Band
 
 void RelativeFilter::update(const DifferenceEpoch& epoch, FloatEpoch& result) {
   LeftOut out;
-  // A code's error at one epoch is not larger for lasting, so codes are tested with the noise of one epoch.
-  Weighting of_one_epoch = weighting_;
-  of_one_epoch.noise.code_inflation = 1.0;
   for (;;) {
-    result.dd = double_differences(epoch, state_, out, options_.differences, of_one_epoch);
+    result.dd = double_differences(epoch, state_, out, options_.differences, weighting_);
     std::set<std::size_t> satellites;
     for (const Row& row : result.dd.rows) satellites.insert(row.satellite);
     if (satellites.size() < fewest_ || result.dd.empty()) {
       result.shortfall = out.empty() ? Shortfall::kFewSatellites : Shortfall::kContradiction;
       return;
     }
-    const Innovation in = innovation_of(result.dd.B * result.dd.H, result.dd.B * result.dd.residual, state_);
-    if (in.S.info() != Eigen::Success || !in.v.allFinite()) {  // the state is invalid
+    // An error that lasts is not larger for that: codes are tested with the noise of one epoch.
+    const Innovation of_one_epoch = innovation_of(result.dd, state_);
+    if (of_one_epoch.S.info() != Eigen::Success || !of_one_epoch.v.allFinite()) {  // the state is invalid
       state_ = RelativeState();
       started_ = false;
       result.shortfall = Shortfall::kContradiction;
       return;
     }
-    const std::optional<std::size_t> worst = outlier(result.dd, in);
-    if (!worst) {
-      if (weighting_.noise.code_inflation > 1.0) {
-        result.dd = double_differences(epoch, state_, out, options_.differences, weighting_);
-        apply(innovation_of(result.dd.B * result.dd.H, result.dd.B * result.dd.residual, state_), epoch, result);
-      } else {
-        apply(in, epoch, result);
-      }
-      return;
-    }
-    const Row& row = result.dd.rows[*worst];
-    if (row.observable != Observable::kRate)
-      result.left_out.push_back(left_out(epoch, row, result.dd.residual(static_cast<Eigen::Index>(*worst))));
-    out.insert({row.satellite, row.band, row.observable});
-    if (row.observable == Observable::kPhase) {
-      const SatelliteDifference& satellite = epoch.satellites[row.satellite];
-      result.restarted.push_back(ambiguity_of(satellite, satellite.bands[row.band]));
-      start_anew(satellite, satellite.bands[row.band]);
-    }
+    const std::vector<std::size_t> worst = outliers(result.dd, of_one_epoch);
+    if (worst.empty()) break;
+    for (const std::size_t i : worst) leave_out(i, epoch, out, result);
   }
+  inflate_codes(result.dd, epoch, weighting_);
+  apply(innovation_of(result.dd, state_), epoch, result);
+}
+
+void RelativeFilter::leave_out(std::size_t i, const DifferenceEpoch& epoch, LeftOut& out, FloatEpoch& result) {
+  const Row& row = result.dd.rows[i];
+  if (row.observable != Observable::kRate)
+    result.left_out.push_back(left_out(epoch, row, result.dd.residual(static_cast<Eigen::Index>(i))));
+  out.insert({row.satellite, row.band, row.observable});
+  if (row.observable != Observable::kPhase) return;
+  const SatelliteDifference& satellite = epoch.satellites[row.satellite];
+  result.restarted.push_back(ambiguity_of(satellite, satellite.bands[row.band]));
+  start_anew(satellite, satellite.bands[row.band]);
 }
 
 Eigen::VectorXd RelativeFilter::absorb(const Innovation& in) {

@@ -63,6 +63,7 @@ class RelativeFilter {
   void start_anew(const SatelliteDifference& satellite, const BandDifference& band);
   /// Detects outliers, leaves codes out, resets ambiguities of phases; then updates.
   void update(const DifferenceEpoch& epoch, FloatEpoch& result);
+  void leave_out(std::size_t row, const DifferenceEpoch& epoch, LeftOut& out, FloatEpoch& result);
   void apply(const Innovation& in, const DifferenceEpoch& epoch, FloatEpoch& result);
   /// @return the step of the state
   Eigen::VectorXd absorb(const Innovation& in);
