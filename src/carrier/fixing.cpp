@@ -76,7 +76,7 @@ struct Attempt {
   double ratio = 0.0;
 };
 
-std::optional<Attempt> attempt(const std::vector<Fixable>& set, const RelativeState& state) {
+std::optional<Attempt> attempt(const std::vector<Fixable>& set, const RelativeState& state, double least_success) {
   constexpr Eigen::Index kFewest = 4;
   Attempt t;
   t.set = set;
@@ -97,7 +97,7 @@ std::optional<Attempt> attempt(const std::vector<Fixable>& set, const RelativeSt
   }
   t.Q = 0.5 * (t.Q + t.Q.transpose()).eval();
   try {
-    t.integers = integer_least_squares(t.a, t.Q);
+    t.integers = integer_least_squares(t.a, t.Q, 2, least_success);
   } catch (const NumericalError&) {
     return std::nullopt;
   }
@@ -160,7 +160,7 @@ std::vector<Fixable> with_good_codes(std::vector<Fixable> set, const FloatEpoch&
 class PartialFixing {
  public:
   PartialFixing(const std::vector<Fixable>& all, const RelativeState& state, const FixingOptions& options)
-      : all_(all), state_(state), options_(options), best_(attempt(all, state)) {}
+      : all_(all), state_(state), options_(options), best_(attempt(all, state, options.success_rate)) {}
 
   /// All; else without those left float in the previous epoch; else, if the integers are too uncertain, without the least
   /// certain, if they are not significant, without one satellite, tried in turn, or without the lowest.
@@ -190,7 +190,7 @@ class PartialFixing {
   [[nodiscard]] bool done() const { return good(*best_, options_); }
   /// @return whether there is a solution that is certain enough
   bool consider(const std::vector<Fixable>& set) {
-    std::optional<Attempt> next = attempt(set, state_);
+    std::optional<Attempt> next = attempt(set, state_, options_.success_rate);
     if (!next || next->integers.success_rate < options_.success_rate) return false;
     if (best_->integers.success_rate < options_.success_rate || next->ratio > best_->ratio) best_ = std::move(next);
     return true;
@@ -256,7 +256,7 @@ FixedSolution AmbiguityFixing::fix(const DifferenceEpoch& epoch, const FloatEpoc
   without_ = satellites_of(first);
   std::erase_if(without_, [&](Satellite s) { return std::ranges::find(solution.satellites, s) != solution.satellites.end(); });
   // Because of inter-frequency biases, GLONASS's integers are uncertain until the others have fixed the position.
-  if (const std::optional<Attempt> more = attempt(glonass, fixed); more && good(*more, options_)) take(*more, fixed, solution);
+  if (const std::optional<Attempt> more = attempt(glonass, fixed, options_.success_rate); more && good(*more, options_)) take(*more, fixed, solution);
   solution.x = std::move(fixed.x);
   solution.P = std::move(fixed.P);
   solution.fixed = true;

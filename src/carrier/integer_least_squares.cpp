@@ -107,26 +107,30 @@ class Decorrelation {
 class Search {
  public:
   Search(const Decorrelation& of, VectorXd z_float, int count)
-      : L_(of.L()), D_(of.D()), float_(std::move(z_float)), z_(float_.size()), wanted_(static_cast<std::size_t>(count)) {}
+      : Lt_(of.L().transpose()),
+        D_(of.D()),
+        float_(std::move(z_float)),
+        z_(float_.size()),
+        shifts_(MatrixXd::Zero(float_.size(), float_.size())),
+        wanted_(static_cast<std::size_t>(count)) {}
 
   struct Candidate {
     VectorXd z;
     double norm;
   };
   [[nodiscard]] std::vector<Candidate> run() {
-    descend(float_.size() - 1, 0.0, VectorXd::Zero(float_.size()));
+    descend(float_.size() - 1, 0.0);
     return found_;
   }
 
  private:
-  static constexpr long kMostNodes = 2'000'000;  // beyond it the ambiguities cannot be fixed anyway
+  static constexpr long kMostNodes = 200'000;  // beyond it the ambiguities cannot be fixed anyway
 
   [[nodiscard]] double bound() const {
     return found_.size() < wanted_ ? std::numeric_limits<double>::infinity() : found_.back().norm;
   }
-  /// @param shift  of the other ambiguities by the integers chosen above
-  void descend(Index k, double norm, const VectorXd& shift) {
-    const double centre = float_(k) + shift(k);
+  void descend(Index k, double norm) {
+    const double centre = float_(k) + shifts_(k, k);
     double z = nearest(centre);
     double step = centre >= z ? 1.0 : -1.0;
     while (++nodes_ < kMostNodes) {
@@ -134,10 +138,12 @@ class Search {
       const double here = norm + off * off / D_(k);
       if (!(here < bound())) return;
       z_(k) = z;
-      if (k == 0)
+      if (k == 0) {
         keep(here);
-      else
-        descend(k - 1, here, shift + (z - centre) * L_.row(k).transpose());
+      } else {
+        shifts_.col(k - 1).head(k) = shifts_.col(k).head(k) + (z - centre) * Lt_.col(k).head(k);
+        descend(k - 1, here);
+      }
       z += step;
       step = -step - std::copysign(1.0, step);
     }
@@ -149,10 +155,11 @@ class Search {
     if (found_.size() > wanted_) found_.pop_back();
   }
 
-  const MatrixXd& L_;
+  const MatrixXd Lt_;
   const VectorXd& D_;
   VectorXd float_;
   VectorXd z_;
+  MatrixXd shifts_;  ///< column k: of the ambiguities up to k by the integers chosen above
   std::size_t wanted_;
   std::vector<Candidate> found_;
   long nodes_ = 0;
@@ -165,15 +172,18 @@ double IntegerSolutions::ratio() const {
   return squared_norms(0) > 0.0 ? squared_norms(1) / squared_norms(0) : std::numeric_limits<double>::infinity();
 }
 
-IntegerSolutions integer_least_squares(const VectorXd& a, const MatrixXd& Q, int count) {
+IntegerSolutions integer_least_squares(const VectorXd& a, const MatrixXd& Q, int count, double least_success) {
   if (a.size() == 0 || Q.rows() != a.size() || Q.cols() != a.size() || count < 1)
     throw std::invalid_argument(fmt::format("integer_least_squares: {} ambiguities, a {} x {} covariance, {} candidates",
                                             a.size(), Q.rows(), Q.cols(), count));
   const Decorrelation decorrelated(Q);
+  IntegerSolutions result;
+  result.success_rate = 1.0;
+  for (const double variance : decorrelated.D()) result.success_rate *= std::erf(0.5 / std::sqrt(2.0 * variance));
+  if (result.success_rate < least_success) return result;
   // Integer cycles are subtracted first: large ones would lose digits.
   const VectorXd whole = a.array().round();
   const auto found = Search(decorrelated, decorrelated.Z().transpose() * (a - whole), count).run();
-  IntegerSolutions result;
   result.candidates.resize(a.size(), static_cast<Index>(found.size()));
   result.squared_norms.resize(static_cast<Index>(found.size()));
   const Eigen::PartialPivLU<MatrixXd> back(decorrelated.Z().transpose());
@@ -182,8 +192,6 @@ IntegerSolutions integer_least_squares(const VectorXd& a, const MatrixXd& Q, int
     result.candidates.col(column) = whole + back.solve(found[i].z).array().round().matrix();
     result.squared_norms(column) = found[i].norm;
   }
-  result.success_rate = 1.0;
-  for (const double variance : decorrelated.D()) result.success_rate *= std::erf(0.5 / std::sqrt(2.0 * variance));
   return result;
 }
 

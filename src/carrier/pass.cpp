@@ -2,12 +2,7 @@
 
 #include <Eigen/LU>
 #include <algorithm>
-#include <cstdlib>
-#include <fmt/format.h>
-#include <cstdio>
-#include <string>
 #include <cmath>
-#include <limits>
 
 #include "integer_position.hpp"
 
@@ -99,7 +94,7 @@ Eigen::Matrix3d air_covariance(const std::map<std::size_t, Direction>& satellite
 
 /// Integers are not accepted as a fix if errors not included in the noise could be decimetres.
 bool badly_placed(double pdop, const Eigen::Matrix3d& covariance_e) {
-  const double kMostPdop = getenv("PD") ? atof(getenv("PD")) : 10.0;
+  constexpr double kMostPdop = 10.0;
   constexpr double kMostSd = 0.1;  // m, three-dimensional
   return pdop > kMostPdop || !(covariance_e.trace() < kMostSd * kMostSd);
 }
@@ -161,11 +156,6 @@ PpkEpoch solve(const DifferenceEpoch& epoch, const PpkOptions& options, const st
   solved.quality = precise ? record::FixQuality::kFixed : record::FixQuality::kFloat;
   solved.covariance_e += air_covariance(satellites, state.x.head<3>(), epoch, options);
   add_residuals(epoch, updated, step, fixed, solved);
-  if (getenv("DBG")) {
-    int nk = 0; for (auto& r : updated.dd.rows) nk += r.observable == Observable::kPhase;
-    std::string lo; for (auto& r : updated.left_out) lo += fmt::format(" {}{}{}", record::to_string(r.satellite), r.band, r.phase ? "p" : "c");
-    fprintf(stderr, "DBG %.1f known %zu phases %d fixed %d amb %d ratio %.1f succ %.3f sdpos %.3f nis %.1f out%s\n", epoch.t.sow(), known.size(), nk, (int)fixed.fixed, fixed.ambiguities, fixed.ratio, fixed.success_rate, std::sqrt(solved.covariance_e.trace()), updated.nis, lo.c_str());
-  }
   if (options.fixing.hold && fixed.fixed) {
     const HeldIntegers agreed = held(pass.hold.agreed(fixed.pairs), state);
     if (agreed.nu.size() > 0) filter.absorb(agreed.H, agreed.nu);

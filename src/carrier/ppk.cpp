@@ -1,10 +1,9 @@
 #include "coast/carrier/ppk.hpp"
 
 #include <fmt/format.h>
+#include <tbb/parallel_invoke.h>
 
 #include <algorithm>
-#include <cstdlib>
-#include <cstdio>
 
 #include "coast/record/error.hpp"
 #include "doppler_displacement.hpp"
@@ -53,6 +52,18 @@ AirStates air_states(const std::vector<DifferenceEpoch>& epochs, bool ionosphere
   }
   const bool far = upper_end(lengths) > kFar;
   return {far || ionosphere_free, far || upper_end(heights) > kAbove, ionosphere_free};
+}
+
+/// Three stretches of the mission, at its beginning, middle and end: enough for a handful of sds. All of it, if it is short.
+std::vector<DifferenceEpoch> sample(const std::vector<DifferenceEpoch>& epochs) {
+  constexpr std::size_t kStretches = 3, kLength = 400;
+  if (epochs.size() <= kStretches * kLength) return epochs;
+  std::vector<DifferenceEpoch> parts;
+  for (std::size_t k = 0; k < kStretches; ++k) {
+    const auto begin = epochs.begin() + static_cast<std::ptrdiff_t>(k * (epochs.size() - kLength) / (kStretches - 1));
+    parts.insert(parts.end(), begin, begin + kLength);
+  }
+  return parts;
 }
 
 void check(const record::ObservationRecording& rover, const record::ObservationRecording& base, const PpkSolution& solution,
@@ -114,29 +125,33 @@ PpkSolution solve_ppk(const record::ObservationRecording& rover, const record::O
   if (!options.air) settled.air = air_states(epochs, options.differences.air.ionosphere_free);
   const bool combined = options.order == PassOrder::kCombined;
   const bool backward = options.order == PassOrder::kBackward;
-  Stages stages(progress, (options.noise ? 0 : 1) + (combined ? 4 : 1));
+  Stages stages(progress, (options.noise ? 0 : 1) + (combined ? 2 : 1));
   if (!options.noise) {
     constexpr NoiseScale kLenient{1.5, 2.0, 1.0};  // so that noise is not considered an outlier before it is known
     settled.noise = kLenient;
-    const std::vector<PpkEpoch> first = solve_pass(epochs, settled, solution.interval_s, backward, {}, stages.next()).epochs;
+    const std::vector<DifferenceEpoch> parts = sample(epochs);
+    const std::vector<PpkEpoch> first = solve_pass(parts, settled, solution.interval_s, backward, {}, stages.next()).epochs;
     settled.noise = estimate_noise(first, *settled.noise);
-    settled.noise->displacement = displacement_noise(epochs, first);
-    if (getenv("DBG")) fprintf(stderr, "DBGdisp %f\n", settled.noise->displacement.value_or(-1));
+    settled.noise->displacement = displacement_noise(parts, first);
   }
   solution.noise = *settled.noise;
   solution.air = *settled.air;
-  const auto pass = [&](bool in_reverse, const KnownIntegers& known) {
-    return solve_pass(epochs, settled, solution.interval_s, in_reverse, known, stages.next());
+  const auto pass = [&](bool in_reverse, const KnownIntegers& known, const std::function<void(double)>& told) {
+    return solve_pass(epochs, settled, solution.interval_s, in_reverse, known, told);
   };
   if (combined) {
-    Pass there = pass(false, {}), back = pass(true, {});
+    const auto both = [&](const KnownIntegers& known) {
+      std::pair<Pass, Pass> passes;
+      const std::function<void(double)> told = stages.next();
+      tbb::parallel_invoke([&] { passes.first = pass(false, known, told); }, [&] { passes.second = pass(true, known, {}); });
+      return passes;
+    };
+    auto [there, back] = both({});
     split_arcs(epochs, there.ambiguities, back.ambiguities);
-    const KnownIntegers known(there.ambiguities, back.ambiguities);
-    const auto f2 = pass(false, known).epochs, b2 = pass(true, known).epochs;
-    solution.epochs = combine(f2, b2);
-    if (const char* d = getenv("DBGPASS")) solution.epochs = *d == '1' ? f2 : *d == '2' ? b2 : *d == '3' ? there.epochs : back.epochs;
+    const auto [forward, reverse] = both(KnownIntegers(there.ambiguities, back.ambiguities));
+    solution.epochs = combine(forward.epochs, reverse.epochs);
   } else {
-    solution.epochs = pass(backward, {}).epochs;
+    solution.epochs = pass(backward, {}, stages.next()).epochs;
   }
   add_phase_velocities(epochs, solution.noise, options.differences, solution.epochs);
   if (!options.noise) solution.noise.rate = estimate_rate_noise(epochs, solution.epochs, options.differences);

@@ -21,8 +21,10 @@ struct IntegerSolutions {
 /// MLAMBDA).
 /// @param a  float ambiguities, cycles  @param Q  their covariance, cycles^2, symmetric and positive definite
 /// @param count  number of candidates, 2 for the ratio test
+/// @param least_success  with a smaller success rate there are no candidates: the search would take long and mean nothing
 /// @throws std::invalid_argument  sizes that do not fit, or count below 1
 /// @throws NumericalError  Q is not positive definite
-[[nodiscard]] IntegerSolutions integer_least_squares(const Eigen::VectorXd& a, const Eigen::MatrixXd& Q, int count = 2);
+[[nodiscard]] IntegerSolutions integer_least_squares(const Eigen::VectorXd& a, const Eigen::MatrixXd& Q, int count = 2,
+                                                     double least_success = 0.0);
 
 }  // namespace coast::carrier
