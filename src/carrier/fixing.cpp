@@ -239,7 +239,8 @@ FixedSolution AmbiguityFixing::fix(const DifferenceEpoch& epoch, const FloatEpoc
   std::ranges::copy_if(all, std::back_inserter(glonass),
                        [](const Fixable& f) { return f.satellite.system == SatelliteSystem::kGlonass; });
   if (first.empty()) std::swap(first, glonass);
-  const std::optional<Attempt> best = PartialFixing(first, state, options_).run(without_, among(first, known, state), with_good_codes(first, updated));
+  const std::optional<Attempt> best =
+      PartialFixing(first, state, options_).run(without_, among(first, known, state), with_good_codes(first, updated));
   if (!best) {
     solution.shortfall = Shortfall::kFewAmbiguities;
     return solution;
@@ -256,7 +257,8 @@ FixedSolution AmbiguityFixing::fix(const DifferenceEpoch& epoch, const FloatEpoc
   without_ = satellites_of(first);
   std::erase_if(without_, [&](Satellite s) { return std::ranges::find(solution.satellites, s) != solution.satellites.end(); });
   // Because of inter-frequency biases, GLONASS's integers are uncertain until the others have fixed the position.
-  if (const std::optional<Attempt> more = attempt(glonass, fixed, options_.success_rate); more && good(*more, options_)) take(*more, fixed, solution);
+  if (const std::optional<Attempt> more = attempt(glonass, fixed, options_.success_rate); more && good(*more, options_))
+    take(*more, fixed, solution);
   solution.x = std::move(fixed.x);
   solution.P = std::move(fixed.P);
   solution.fixed = true;

@@ -7,8 +7,8 @@ namespace coast::carrier {
 
 struct FixedSolution {
   bool fixed = false;
-  Eigen::VectorXd x;  ///< the state with the integers
-  Eigen::MatrixXd P;  ///< its covariance
+  Eigen::VectorXd x;                          ///< the state with the integers
+  Eigen::MatrixXd P;                          ///< its covariance
   std::vector<record::Satellite> satellites;  ///< those with integers
   std::vector<FixedPair> pairs;
   int ambiguities = 0;

@@ -15,7 +15,7 @@ using record::SatelliteSystem;
 
 /// Integer phases as rows over the position, the ambiguity of each group's reference (with the clock), and the atmosphere.
 struct IntegerRows {
-  std::vector<Unknown> ambiguities;  ///< of the rows
+  std::vector<Unknown> ambiguities;   ///< of the rows
   std::vector<Eigen::Vector3d> ways;  ///< directions to the satellites, e
   Eigen::MatrixXd A;
   Eigen::VectorXd y;
@@ -43,7 +43,7 @@ std::vector<Eigen::Index> air_indices(const RelativeState& state) {
 }
 
 IntegerRows integer_rows(const DifferenceEpoch& epoch, const FloatEpoch& updated, const RelativeState& state,
-                   const FixedSolution& fixed) {
+                         const FixedSolution& fixed) {
   struct Used {
     Eigen::Index row, ambiguity;
     double value;

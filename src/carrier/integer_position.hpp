@@ -8,8 +8,8 @@ namespace coast::carrier {
 struct IntegerPosition {
   Eigen::VectorXd step;  ///< of the state from the linearisation, with the integers
   Eigen::Matrix3d covariance_e = Eigen::Matrix3d::Zero();
-  double pdop = 0.0;                    ///< of the satellites used, each system with its own clock
-  std::vector<Unknown> contradicted;    ///< ambiguities whose integers do not agree with the others
+  double pdop = 0.0;                  ///< of the satellites used, each system with its own clock
+  std::vector<Unknown> contradicted;  ///< ambiguities whose integers do not agree with the others
 };
 
 /// From the phases that have integers, and nothing else but the delays of the atmosphere: float ambiguities contain codes and

@@ -145,8 +145,7 @@ std::vector<FixedPair> KnownIntegers::of(const DifferenceEpoch& epoch) const {
       const Unknown ambiguity{Unknown::Kind::kAmbiguity, satellite.satellite, band.band, band.arc};
       const auto at = places_.find(ambiguity);
       if (at == places_.end()) continue;
-      const auto [reference, is_first] =
-          references.try_emplace(at->second.component, std::pair{ambiguity, at->second.integer});
+      const auto [reference, is_first] = references.try_emplace(at->second.component, std::pair{ambiguity, at->second.integer});
       if (!is_first) pairs.push_back({ambiguity, reference->second.first, at->second.integer - reference->second.second});
     }
   return pairs;

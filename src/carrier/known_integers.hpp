@@ -42,8 +42,8 @@ struct AmbiguityHistory {
   std::vector<std::vector<Unknown>> restarted;  ///< contradicted by the phase of this epoch
 };
 
-/// Begins a new arc wherever either pass restarted an ambiguity, in the epochs and in both histories: forward in time the slip is
-/// before the epoch of the restart, backward after it.
+/// Begins a new arc wherever either pass restarted an ambiguity, in the epochs and in both histories: forward in time the slip
+/// is before the epoch of the restart, backward after it.
 void split_arcs(std::vector<DifferenceEpoch>& epochs, AmbiguityHistory& forward, AmbiguityHistory& backward);
 
 /// Integers of whole arcs, by majority of the epochs of both passes in which they were fixed. A mission is solved after it has
@@ -58,7 +58,7 @@ class KnownIntegers {
 
  private:
   struct Place {
-    int component = 0;    ///< arcs whose differences are known
+    int component = 0;     ///< arcs whose differences are known
     double integer = 0.0;  ///< relative to one arc of the component
   };
   std::map<Unknown, Place> places_;

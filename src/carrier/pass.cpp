@@ -79,10 +79,10 @@ double pdop_of(const std::map<std::size_t, Direction>& satellites) {
 }
 
 /// The difference of the atmosphere at both ends moves the position equally in all bands, so that residuals do not show it. If
-/// it is not estimated: effect of one range per satellite with an error of 0.7 mm per kilometre at the zenith.
+/// it is not estimated: effect of one range per satellite with an error of a millimetre per kilometre at the zenith.
 Eigen::Matrix3d air_covariance(const std::map<std::size_t, Direction>& satellites, const Eigen::Vector3d& r_e,
                                const DifferenceEpoch& epoch, const PpkOptions& options) {
-  constexpr double kPerMetre = 7e-7;
+  constexpr double kPerMetre = 1e-6;
   if (!options.differences.air.troposphere || (options.air && options.air->ionosphere)) return Eigen::Matrix3d::Zero();
   const double zenith = kPerMetre * (r_e - epoch.r_base_e).norm();
   const auto covariance =
@@ -106,75 +106,102 @@ int known_among(const std::vector<FixedPair>& fixed, const std::vector<FixedPair
       fixed, [&](const FixedPair& p) { return of_known.contains(p.ambiguity) && of_known.contains(p.reference); }));
 }
 
-/// What is carried from epoch to epoch.
-struct PassState {
-  RelativeFilter filter;
-  AmbiguityFixing fixing;
-  IntegerHold hold;
+/// What an epoch's position is taken from.
+struct Chosen {
+  bool by_integers = false;
+  Eigen::VectorXd step;  ///< of the state, from the linearisation
+  Eigen::Matrix3d covariance_e = Eigen::Matrix3d::Zero();
+  std::vector<FixedPair> integers;  ///< those that the phases of the epoch agree with
 };
 
-PpkEpoch solve(const DifferenceEpoch& epoch, const PpkOptions& options, const std::vector<FixedPair>& known, PassState& pass,
-               std::vector<FixedPair>& integers, std::vector<Unknown>& restarted) {
-  RelativeFilter& filter = pass.filter;
-  PpkEpoch solved = alone(epoch);
-  const FloatEpoch updated = filter.step(epoch, known);
-  restarted = updated.restarted;
-  solved.residuals = updated.left_out;
-  solved.shortfall = updated.shortfall;
-  if (!updated.updated) return solved;
-  const RelativeState& state = filter.state();
-  FixedSolution fixed;
-  if (options.fixing.wanted) fixed = pass.fixing.fix(epoch, updated, state, known);
-  integers = fixed.pairs;
-  solved.shortfall = fixed.shortfall;
-  solved.ratio = fixed.ratio;
-  solved.success_rate = fixed.success_rate;
-  solved.fixed_ambiguities = fixed.ambiguities;
-  solved.known_ambiguities = known_among(fixed.pairs, known);
-  const std::map<std::size_t, Direction> satellites = directions(updated);
-  solved.satellites = static_cast<int>(satellites.size());
-  solved.pdop = pdop_of(satellites);
-  Eigen::VectorXd step = (fixed.fixed ? fixed.x : state.x) - (state.x - updated.step);
-  solved.covariance_e = (fixed.fixed ? fixed.P : state.P).topLeftCorner<3, 3>();
-  double pdop = solved.pdop;
-  if (fixed.fixed) {
-    if (const std::optional<IntegerPosition> alone = integer_position(epoch, updated, state, fixed)) {
-      pdop = alone->pdop;
-      if (!badly_placed(pdop, alone->covariance_e)) {
-        step = alone->step;
-        solved.covariance_e = alone->covariance_e;
-      }
-      std::erase_if(integers, [&](const FixedPair& pair) {
-        return std::ranges::any_of(alone->contradicted,
-                                   [&](const Unknown& u) { return u == pair.ambiguity || u == pair.reference; });
-      });
-    }
-    if (badly_placed(pdop, solved.covariance_e)) solved.shortfall = Shortfall::kBadGeometry;
+/// @param pdop  of all satellites
+Chosen choose(const DifferenceEpoch& epoch, const FloatEpoch& updated, const RelativeState& state, const FixedSolution& fixed,
+              double pdop) {
+  Chosen as_float{false, updated.step, state.P.topLeftCorner<3, 3>(), fixed.pairs};
+  if (!fixed.fixed) return as_float;
+  Chosen chosen{true, fixed.x - (state.x - updated.step), fixed.P.topLeftCorner<3, 3>(), fixed.pairs};
+  if (const std::optional<IntegerPosition> position = integer_position(epoch, updated, state, fixed)) {
+    pdop = position->pdop;
+    chosen.step = position->step;
+    chosen.covariance_e = position->covariance_e;
+    std::erase_if(chosen.integers, [&](const FixedPair& pair) {
+      return std::ranges::any_of(position->contradicted,
+                                 [&](const Unknown& u) { return u == pair.ambiguity || u == pair.reference; });
+    });
   }
-  solved.r_e = (state.x - updated.step + step).head<3>();
-  const bool precise = fixed.fixed && solved.shortfall == Shortfall::kNone;
-  solved.quality = precise ? record::FixQuality::kFixed : record::FixQuality::kFloat;
-  solved.covariance_e += air_covariance(satellites, state.x.head<3>(), epoch, options);
-  add_residuals(epoch, updated, step, fixed, solved);
-  if (options.fixing.hold && fixed.fixed) {
-    const HeldIntegers agreed = held(pass.hold.agreed(fixed.pairs), state);
-    if (agreed.nu.size() > 0) filter.absorb(agreed.H, agreed.nu);
-  }
-  return solved;
+  if (!badly_placed(pdop, chosen.covariance_e)) return chosen;
+  as_float.integers = std::move(chosen.integers);
+  return as_float;
 }
+
+/// A filter on its way through the epochs.
+class Passage {
+ public:
+  Passage(const PpkOptions& options, double interval)
+      : options_(options), filter_(options, interval), fixing_(options.fixing) {}
+
+  /// @param known  integers of its phases
+  PpkEpoch solve(const DifferenceEpoch& epoch, const std::vector<FixedPair>& known) {
+    PpkEpoch solved = alone(epoch);
+    updated_ = filter_.step(epoch, known);
+    integers_.clear();
+    solved.residuals = updated_.left_out;
+    solved.shortfall = updated_.shortfall;
+    if (!updated_.updated) return solved;
+    const RelativeState& state = filter_.state();
+    FixedSolution fixed;
+    if (options_.fixing.wanted) fixed = fixing_.fix(epoch, updated_, state, known);
+    take(fixed, known, solved);
+    const std::map<std::size_t, Direction> satellites = directions(updated_);
+    solved.satellites = static_cast<int>(satellites.size());
+    solved.pdop = pdop_of(satellites);
+    Chosen chosen = choose(epoch, updated_, state, fixed, solved.pdop);
+    if (fixed.fixed && !chosen.by_integers) solved.shortfall = Shortfall::kBadGeometry;
+    solved.quality = chosen.by_integers ? record::FixQuality::kFixed : record::FixQuality::kFloat;
+    solved.r_e = (state.x - updated_.step + chosen.step).head<3>();
+    solved.covariance_e = chosen.covariance_e + air_covariance(satellites, state.x.head<3>(), epoch, options_);
+    add_residuals(epoch, updated_, chosen.step, fixed, solved);
+    if (options_.fixing.hold && fixed.fixed) hold(fixed);
+    integers_ = std::move(chosen.integers);
+    return solved;
+  }
+  /// Of the last epoch.
+  [[nodiscard]] const std::vector<FixedPair>& integers() const { return integers_; }
+  [[nodiscard]] const std::vector<Unknown>& restarted() const { return updated_.restarted; }
+
+ private:
+  static void take(const FixedSolution& fixed, const std::vector<FixedPair>& known, PpkEpoch& solved) {
+    solved.shortfall = fixed.shortfall;
+    solved.ratio = fixed.ratio;
+    solved.success_rate = fixed.success_rate;
+    solved.fixed_ambiguities = fixed.ambiguities;
+    solved.known_ambiguities = known_among(fixed.pairs, known);
+  }
+  void hold(const FixedSolution& fixed) {
+    const HeldIntegers agreed = held(hold_.agreed(fixed.pairs), filter_.state());
+    if (agreed.nu.size() > 0) filter_.absorb(agreed.H, agreed.nu);
+  }
+
+  const PpkOptions& options_;
+  RelativeFilter filter_;
+  AmbiguityFixing fixing_;
+  IntegerHold hold_;
+  FloatEpoch updated_;
+  std::vector<FixedPair> integers_;
+};
 
 }  // namespace
 
 Pass solve_pass(const std::vector<DifferenceEpoch>& epochs, const PpkOptions& options, double interval, bool backward,
                 const KnownIntegers& known, const std::function<void(double)>& progress) {
   const std::size_t n = epochs.size();
-  Pass solved{std::vector<PpkEpoch>(n),
-              {std::vector<std::vector<FixedPair>>(n), std::vector<std::vector<Unknown>>(n)}};
-  PassState pass{RelativeFilter(options, interval), AmbiguityFixing(options.fixing), {}};
+  Pass solved{std::vector<PpkEpoch>(n), {std::vector<std::vector<FixedPair>>(n), std::vector<std::vector<Unknown>>(n)}};
+  Passage passage(options, interval);
   for (std::size_t k = 0; k < n; ++k) {
     const std::size_t i = backward ? n - 1 - k : k;
-    solved.epochs[i] = solve(epochs[i], options, known.of(epochs[i]), pass, solved.ambiguities.fixed[i],
-                             solved.ambiguities.restarted[i]);
+    solved.epochs[i] = passage.solve(epochs[i], known.of(epochs[i]));
+    solved.ambiguities.fixed[i] = passage.integers();
+    solved.ambiguities.restarted[i] = passage.restarted();
     if (progress) progress(static_cast<double>(k + 1) / static_cast<double>(n));
   }
   return solved;

@@ -191,7 +191,8 @@ bool RelativeFilter::move_by_doppler(const DifferenceEpoch& epoch) {
   constexpr double kFar = 100.0;    // m from the single point: the state is wrong
   const std::optional<double> factor = options_.noise->displacement;
   const double dt = epoch.t - last_;
-  if (!factor || !started_ || !last_velocity_ || std::abs(dt) > kLongest || !epoch.alone || !epoch.alone->velocity) return false;
+  if (!factor || !started_ || !last_velocity_ || std::abs(dt) > kLongest || !epoch.alone || !epoch.alone->velocity)
+    return false;
   const DopplerDisplacement moved = doppler_displacement(*last_velocity_, *epoch.alone->velocity, dt);
   const Eigen::Vector3d r_e = state_.x.head<3>() + moved.d_e;
   if ((r_e - epoch.alone->r_e).norm() > kFar) return false;

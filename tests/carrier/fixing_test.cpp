@@ -15,27 +15,20 @@ Unknown ambiguity(std::uint8_t number, int arc = 1) {
   return {Kind::kAmbiguity, {record::SatelliteSystem::kGps, number}, '1', arc};
 }
 
-FixedSolution fixed(std::vector<FixedPair> pairs) {
-  FixedSolution solution;
-  solution.fixed = true;
-  solution.pairs = std::move(pairs);
-  return solution;
-}
-
 TEST(IntegerHold, KeepsWhatComesOutThreeTimesWhateverTheReference) {
   IntegerHold hold;
-  EXPECT_TRUE(hold.agreed(fixed({{ambiguity(1), ambiguity(9), 5.0}, {ambiguity(2), ambiguity(9), -3.0}})).empty());
+  EXPECT_TRUE(hold.agreed({{ambiguity(1), ambiguity(9), 5.0}, {ambiguity(2), ambiguity(9), -3.0}}).empty());
   // The same integers against another satellite.
-  EXPECT_TRUE(hold.agreed(fixed({{ambiguity(2), ambiguity(1), -8.0}, {ambiguity(9), ambiguity(1), -5.0}})).empty());
-  const auto agreed = hold.agreed(fixed({{ambiguity(1), ambiguity(9), 5.0}, {ambiguity(2), ambiguity(9), -3.0}}));
+  EXPECT_TRUE(hold.agreed({{ambiguity(2), ambiguity(1), -8.0}, {ambiguity(9), ambiguity(1), -5.0}}).empty());
+  const auto agreed = hold.agreed({{ambiguity(1), ambiguity(9), 5.0}, {ambiguity(2), ambiguity(9), -3.0}});
   ASSERT_EQ(agreed.size(), 2U);
   EXPECT_EQ(agreed[0].integer, 5.0);
   // One that changes begins anew, the other stays.
-  const auto changed = hold.agreed(fixed({{ambiguity(1), ambiguity(9), 5.0}, {ambiguity(2), ambiguity(9), -4.0}}));
+  const auto changed = hold.agreed({{ambiguity(1), ambiguity(9), 5.0}, {ambiguity(2), ambiguity(9), -4.0}});
   ASSERT_EQ(changed.size(), 1U);
   EXPECT_EQ(changed[0].ambiguity, ambiguity(1));
   // A new arc is another ambiguity.
-  EXPECT_TRUE(hold.agreed(fixed({{ambiguity(1, 2), ambiguity(9), 5.0}})).empty());
+  EXPECT_TRUE(hold.agreed({{ambiguity(1, 2), ambiguity(9), 5.0}}).empty());
 }
 
 TEST(IntegerHold, HeldIntegersAreMeasurementsOfTheDifference) {
