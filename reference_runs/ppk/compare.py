@@ -104,7 +104,7 @@ def unpacked(name, out):
     source = os.path.join(DATA, name)
     if not name.endswith(".gz"):
         return source
-    target = os.path.join(out, os.path.basename(name)[:-3])
+    target = os.path.join(out, name.replace("/", "-")[:-3])
     if not os.path.exists(target):
         with gzip.open(source, "rb") as packed, open(target, "wb") as plain:
             plain.write(packed.read())
@@ -206,7 +206,7 @@ def statistics(epochs, expected, errors, exact):
               "error_over_sigma": math.sqrt(sum(ratios) / len(ratios)) if ratios else None}
     if exact:
         everywhere = [math.dist(e, (0, 0, 0)) for e in errors.values()]
-        result |= {"all_p95_m": quantile(everywhere, 0.95), "all_max_m": max(everywhere)}
+        result |= {"all_p95_m": quantile(everywhere, 0.95), "all_max_m": max(everywhere, default=None)}
     return {key: value for key, value in result.items() if value is not None}
 
 
