@@ -124,7 +124,7 @@ class Search {
   }
 
  private:
-  static constexpr long kMostNodes = 200'000;  // beyond it the ambiguities cannot be fixed anyway
+  static constexpr long kMostNodes = 20'000;  // beyond it the ambiguities cannot be fixed anyway
 
   [[nodiscard]] double bound() const {
     return found_.size() < wanted_ ? std::numeric_limits<double>::infinity() : found_.back().norm;

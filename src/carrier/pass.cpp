@@ -94,7 +94,7 @@ Eigen::Matrix3d air_covariance(const std::map<std::size_t, Direction>& satellite
 
 /// Integers are not accepted as a fix if errors not included in the noise could be decimetres.
 bool badly_placed(double pdop, const Eigen::Matrix3d& covariance_e) {
-  constexpr double kMostPdop = 10.0;
+  constexpr double kMostPdop = 15.0;
   constexpr double kMostSd = 0.1;  // m, three-dimensional
   return pdop > kMostPdop || !(covariance_e.trace() < kMostSd * kMostSd);
 }
