@@ -4,6 +4,7 @@
 #include <tbb/parallel_invoke.h>
 
 #include <algorithm>
+#include <tuple>
 
 #include "coast/record/error.hpp"
 #include "doppler_displacement.hpp"
@@ -148,8 +149,9 @@ PpkSolution solve_ppk(const record::ObservationRecording& rover, const record::O
     };
     auto [there, back] = both({});
     split_arcs(epochs, there.ambiguities, back.ambiguities);
-    const auto [forward, reverse] = both(KnownIntegers(there.ambiguities, back.ambiguities));
-    solution.epochs = combine(forward.epochs, reverse.epochs);
+    const KnownIntegers known(there.ambiguities, back.ambiguities);
+    if (!known.empty()) std::tie(there, back) = both(known);
+    solution.epochs = combine(there.epochs, back.epochs);
   } else {
     solution.epochs = pass(backward, {}, stages.next()).epochs;
   }
