@@ -3,158 +3,20 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base_residuals.hpp"
 #include "coast/carrier/signals.hpp"
-#include "coast/carrier/solid_tides.hpp"
 #include "cycle_slips.hpp"
-#include "receiver_track.hpp"
 
 namespace coast::carrier {
 
 namespace {
 
-using record::Satellite;
-
-/// Base observations of one satellite minus the model at the base's position.
-struct BaseSatellite {
-  Satellite satellite;
-  double elevation = 0.0;
-  std::vector<TrackedBand> bands;  ///< code and phase minus the model
-};
-
-struct BaseEpoch {
-  geo::GpsTime t;
-  Eigen::Vector3d r_e = Eigen::Vector3d::Zero();
-  std::vector<BaseSatellite> satellites;
-};
-
-/// Velocity of a moving base, from its positions half a second before and after.
-std::optional<Eigen::Vector3d> velocity_of(const BasePosition& position, geo::GpsTime t) {
-  constexpr double kHalf = 0.5;
-  const std::optional<Eigen::Vector3d> before = position(t - kHalf), after = position(t + kHalf);
-  if (!before || !after) return std::nullopt;
-  return (*after - *before) / (2.0 * kHalf);
-}
-
-/// Solid tide of the base minus that of the rover: coordinates are of an Earth without tides. Over short baselines
-/// it differs by a tenth of a millimetre per kilometre.
-Eigen::Vector3d lifted(const Eigen::Vector3d& r_base_e, const std::optional<Eigen::Vector3d>& r_rover_e, geo::GpsTime t) {
-  constexpr double kMatters = 10e3;  // m
-  if (!r_rover_e || (r_base_e - *r_rover_e).norm() < kMatters) return Eigen::Vector3d::Zero();
-  return solid_tide(r_base_e, t) - solid_tide(*r_rover_e, t);
-}
-
-/// @param r_rover_e  approximate
-std::vector<BaseEpoch> residuals_of(const std::vector<TrackedEpoch>& base, const BasePosition& position,
-                                    const std::optional<Eigen::Vector3d>& r_rover_e, const DifferenceOptions& options) {
-  std::vector<BaseEpoch> epochs;
-  for (const TrackedEpoch& tracked : base) {
-    std::optional<Eigen::Vector3d> r_e = position(tracked.t);
-    if (!r_e) continue;
-    *r_e += lifted(*r_e, r_rover_e, tracked.t);
-    BaseEpoch& epoch = epochs.emplace_back(BaseEpoch{tracked.t, *r_e, {}});
-    const geo::Geodetic receiver = geo::geodetic_from_ecef(*r_e);
-    const std::optional<Eigen::Vector3d> v_e = velocity_of(position, tracked.t);
-    for (const TrackedSatellite& s : tracked.satellites) {
-      const SignalPath path = path_to(s.state, *r_e, receiver, tracked.t, options.air.troposphere);
-      if (path.direction.elevation < options.elevation_mask) continue;
-      BaseSatellite& of = epoch.satellites.emplace_back(BaseSatellite{s.satellite, path.direction.elevation, s.bands});
-      const double modelled = path.modelled(s.state);
-      for (TrackedBand& band : of.bands) {
-        double expected = modelled;
-        if (options.base_antenna)
-          expected += phase_centre_correction(*options.base_antenna, s.satellite.system, band.band, path.direction);
-        if (band.code) *band.code -= expected;
-        if (band.phase) *band.phase -= expected;
-        if (band.rate && v_e)
-          *band.rate -= modelled_rate(s.state, *r_e, *v_e);
-        else
-          band.rate.reset();
-      }
-    }
-  }
-  return epochs;
-}
-
-/// The base's residuals at any instant, linearly between its epochs.
-class BaseInterpolation {
- public:
-  BaseInterpolation(std::vector<BaseEpoch> epochs, double longest_gap) : epochs_(std::move(epochs)), gap_(longest_gap) {}
-
-  /// Its epochs before and after an instant; the second with weight w, none if the first is at the same time.
-  struct Pair {
-    const BaseEpoch* first = nullptr;
-    const BaseEpoch* second = nullptr;
-    double w = 0.0;
-    double age = 0.0;
-  };
-  Pair around(geo::GpsTime t) const {
-    constexpr double kSame = 0.05;  // s: receivers' clock errors are milliseconds
-    Pair pair;
-    const auto after = std::ranges::lower_bound(epochs_, t - kSame, {}, &BaseEpoch::t);
-    if (after == epochs_.end()) return pair;
-    if (std::abs(after->t - t) <= kSame) {
-      pair.first = &*after;
-      pair.age = std::abs(after->t - t);
-      return pair;
-    }
-    if (after == epochs_.begin() || after->t - std::prev(after)->t > gap_) return pair;
-    pair.first = &*std::prev(after);
-    pair.second = &*after;
-    pair.w = (t - pair.first->t) / (pair.second->t - pair.first->t);
-    pair.age = std::min(t - pair.first->t, pair.second->t - t);
-    return pair;
-  }
-
-  static const BaseSatellite* find(const BaseEpoch& epoch, Satellite satellite) {
-    const auto found = std::ranges::find(epoch.satellites, satellite, &BaseSatellite::satellite);
-    return found == epoch.satellites.end() ? nullptr : &*found;
-  }
-  static const TrackedBand* find(const BaseSatellite& satellite, char band) {
-    const auto found = std::ranges::find(satellite.bands, band, &TrackedBand::band);
-    return found == satellite.bands.end() ? nullptr : &*found;
-  }
-
-  /// One satellite; without bands if it is missing.
-  static BaseSatellite satellite_at(const Pair& pair, Satellite satellite) {
-    const BaseSatellite* first = find(*pair.first, satellite);
-    if (first == nullptr) return {};
-    if (pair.second == nullptr) return *first;
-    const BaseSatellite* second = find(*pair.second, satellite);
-    if (second == nullptr) return {};
-    BaseSatellite between = *first;
-    between.elevation += pair.w * (second->elevation - first->elevation);
-    std::erase_if(between.bands, [&](TrackedBand& band) {
-      const TrackedBand* next = find(*second, band.band);
-      if (next == nullptr) return true;
-      interpolate(pair.w, next->code, band.code);
-      interpolate(pair.w, next->rate, band.rate);
-      if (band.phase && next->phase && band.arc == next->arc)
-        *band.phase += pair.w * (*next->phase - *band.phase);
-      else
-        band.phase.reset();
-      return !band.code && !band.phase;
-    });
-    return between;
-  }
-
- private:
-  static void interpolate(double w, const std::optional<double>& next, std::optional<double>& value) {
-    if (value && next)
-      *value += w * (*next - *value);
-    else
-      value.reset();
-  }
-
-  std::vector<BaseEpoch> epochs_;
-  double gap_;
-};
-
 std::vector<BandDifference> bands_of(const TrackedSatellite& rover, const BaseSatellite& base) {
   constexpr int kManyArcs = 1 << 15;  // of one receiver: both numbers in one
   std::vector<BandDifference> bands;
   for (const TrackedBand& r : rover.bands) {
-    const TrackedBand* b = BaseInterpolation::find(base, r.band);
-    if (b == nullptr) continue;
+    const auto b = std::ranges::find(base.bands, r.band, &TrackedBand::band);
+    if (b == base.bands.end()) continue;
     BandDifference d;
     d.band = r.band;
     d.frequency = r.frequency;
