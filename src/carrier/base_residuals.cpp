@@ -44,56 +44,68 @@ double middle_of(std::vector<double> values) {
 }
 
 /// Continues the arcs of phases that were only missing. The change of all phases of a system and band in common is the clock's;
-/// within minutes a satellite's own is centimetres (its clock, the air), a slip at least a cycle.
+/// a satellite's own, of its clock and the air, goes on as before within centimetres, and a slip is at least a cycle.
 class Bridges {
  public:
   void across(BaseEpoch& epoch) {
-    constexpr double kSame = 0.2;       // cycles
-    constexpr std::size_t kEnough = 4;  // of a group, so that the median is the clock's change
-    std::map<std::pair<SatelliteSystem, char>, std::vector<double>> changes;
-    visit(epoch, [&](const BaseSatellite& s, const TrackedBand& band, const Last& last) {
-      if (last.t != epoch.t) changes[{s.satellite.system, band.band}].push_back(*band.phase - last.phase);
-    });
-    std::map<std::pair<SatelliteSystem, char>, double> clocks;
-    for (const auto& [group, values] : changes)
-      if (values.size() >= kEnough) clocks[group] = middle_of(values);
-    visit(epoch, [&](const BaseSatellite& s, const TrackedBand& band, const Last& last) {
-      if (numbers_.contains(name(s, band))) return;
-      const auto clock = clocks.find({s.satellite.system, band.band});
-      const double wavelength = kSpeedOfLight / band.frequency;
-      const bool goes_on = band.arc != last.given && clock != clocks.end() &&
-                           std::abs(*band.phase - last.phase - clock->second) < kSame * wavelength;
-      numbers_[name(s, band)] = goes_on ? last.number : ++newest_;
-    });
+    const std::map<Group, double> clocks = clock_changes(epoch);
     for (BaseSatellite& s : epoch.satellites)
       for (TrackedBand& band : s.bands) {
         if (!band.phase) continue;
-        const int given = band.arc;
-        const auto number = numbers_.try_emplace(name(s, band), newest_ + 1);
-        if (number.second) ++newest_;
-        band.arc = number.first->second;
-        last_[{s.satellite, band.band}] = {epoch.t, *band.phase, given, band.arc};
+        Last next{epoch.t, *band.phase, 0.0, band.arc, 0};
+        const auto last = last_.find({s.satellite, band.band});
+        next.number =
+            last == last_.end() ? ++newest_ : continued(last->second, group_of(s, band, last->second), clocks, band, next);
+        band.arc = next.number;
+        last_[{s.satellite, band.band}] = next;
       }
   }
 
  private:
   struct Last {
     geo::GpsTime t;
-    double phase = 0.0;
+    double phase = 0.0;  ///< m
+    double rate = 0.0;   ///< of the satellite's own, m/s
     int given = 0, number = 0;
+    int rates = 0;  ///< in the mean
+    [[nodiscard]] double predicted(geo::GpsTime to) const { return phase + rate * (to - t); }
   };
-  using Arc = std::tuple<Satellite, char, int>;
-  static Arc name(const BaseSatellite& s, const TrackedBand& band) { return {s.satellite, band.band, band.arc}; }
-  template <class Visitor>
-  void visit(const BaseEpoch& epoch, const Visitor& visitor) const {
+  /// Phases that share a clock and were last seen at the same time.
+  using Group = std::tuple<SatelliteSystem, char, geo::GpsTime>;
+  static Group group_of(const BaseSatellite& s, const TrackedBand& band, const Last& last) {
+    return {s.satellite.system, band.band, last.t};
+  }
+
+  [[nodiscard]] std::map<Group, double> clock_changes(const BaseEpoch& epoch) const {
+    constexpr std::size_t kEnough = 4;  // so that the median is the clock's change
+    std::map<Group, std::vector<double>> changes;
     for (const BaseSatellite& s : epoch.satellites)
       for (const TrackedBand& band : s.bands)
         if (const auto last = last_.find({s.satellite, band.band}); band.phase && last != last_.end())
-          visitor(s, band, last->second);
+          changes[group_of(s, band, last->second)].push_back(*band.phase - last->second.predicted(epoch.t));
+    std::map<Group, double> clocks;
+    for (const auto& [group, values] : changes)
+      if (values.size() >= kEnough) clocks[group] = middle_of(values);
+    return clocks;
+  }
+  /// @return the number of the arc; sets the rate of `next`
+  int continued(const Last& last, const Group& group, const std::map<Group, double>& clocks, const TrackedBand& band,
+                Last& next) {
+    constexpr double kSame = 0.3;      // cycles
+    constexpr double kSettles = 60.0;  // s: of the mean rate, longer than multipath lasts
+    const auto clock = clocks.find(group);
+    const double dt = next.t - last.t;
+    if (clock == clocks.end() || !(dt > 0.0)) return band.arc == last.given ? last.number : ++newest_;
+    const double surprise = next.phase - last.predicted(next.t) - clock->second;
+    const bool same = band.arc == last.given;
+    if (!same && std::abs(surprise) > kSame * kSpeedOfLight / band.frequency) return ++newest_;
+    next.rates = last.rates + 1;
+    const double weight = same ? std::clamp(dt / kSettles, 1.0 / next.rates, 1.0) : 0.0;
+    next.rate = last.rate + weight * surprise / dt;
+    return last.number;
   }
 
   std::map<std::pair<Satellite, char>, Last> last_;
-  std::map<Arc, int> numbers_;  ///< new ones
   int newest_ = 0;
 };
 
