@@ -38,8 +38,8 @@ report::Tile separation_tile(const PpkSummary& s) {
   tile.unit = "cm";
   tile.verdict = s.separation.far == 0 && s.separation.p95 < kGood ? Verdict::kGood : Verdict::kWarn;
   tile.explanation =
-      "Both ways through the recording use the same phases, but find their integers independently: centimetres "
-      "where both are right.";
+      "Both ways through the recording know the integers that most epochs of an arc agree on, and find the others by "
+      "themselves: centimetres where both are right.";
   tile.section = "separation";
   return tile;
 }
