@@ -11,6 +11,7 @@
 
 #include "coast/geo/units.hpp"
 #include "coast/record/error.hpp"
+#include "quantile.hpp"
 
 namespace coast::carrier {
 
@@ -63,13 +64,6 @@ ObservationRecording sample_of(const ObservationRecording& base) {
   const std::size_t n = std::min(kEpochs, base.epochs.size());
   for (std::size_t i = 0; i < n; ++i) sample.epochs.push_back(base.epochs[i * base.epochs.size() / n]);
   return sample;
-}
-
-/// The value not exceeded by a given fraction.
-double quantile(std::vector<double> values, double share) {
-  const auto at = values.begin() + std::lround(share * static_cast<double>(values.size() - 1));
-  std::ranges::nth_element(values, at);
-  return *at;
 }
 
 constexpr std::size_t kLeastPoints = 5;

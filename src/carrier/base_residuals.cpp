@@ -3,10 +3,10 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
-#include <span>
 
 #include "coast/carrier/signals.hpp"
 #include "coast/carrier/solid_tides.hpp"
+#include "quantile.hpp"
 
 namespace coast::carrier {
 
@@ -35,12 +35,6 @@ bool stands(const std::vector<BaseEpoch>& epochs) {
   constexpr double kTides = 0.5;  // m
   return !epochs.empty() &&
          std::ranges::all_of(epochs, [&](const BaseEpoch& e) { return (e.r_e - epochs.front().r_e).norm() < kTides; });
-}
-
-double middle_of(std::vector<double> values) {
-  const auto at = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::ranges::nth_element(values, at);
-  return *at;
 }
 
 /// Continues the arcs of phases that were only missing. The change of all phases of a system and band in common is the clock's;
@@ -85,7 +79,7 @@ class Bridges {
           changes[group_of(s, band, last->second)].push_back(*band.phase - last->second.predicted(epoch.t));
     std::map<Group, double> clocks;
     for (const auto& [group, values] : changes)
-      if (values.size() >= kEnough) clocks[group] = middle_of(values);
+      if (values.size() >= kEnough) clocks[group] = median(values);
     return clocks;
   }
   /// @return the number of the arc; sets the rate of `next`

@@ -4,18 +4,13 @@
 #include <cmath>
 
 #include "coast/carrier/signals.hpp"
+#include "quantile.hpp"
 
 namespace coast::carrier {
 
 namespace {
 
 using Key = std::pair<record::Satellite, char>;
-
-double median(std::vector<double> values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::ranges::nth_element(values, middle);
-  return *middle;
-}
 
 /// Deviations of an epoch, minus their common part (clocks), relative to their bounds.
 class Deviations {

@@ -1,7 +1,6 @@
 #include "coast/carrier/differences.hpp"
 
 #include <algorithm>
-#include <cmath>
 
 #include "base_residuals.hpp"
 #include "coast/carrier/signals.hpp"

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "quantile.hpp"
+
 namespace coast::carrier {
 
 DopplerDisplacement doppler_displacement(const SinglePoint::Velocity& first, const SinglePoint::Velocity& second, double dt) {
@@ -26,9 +28,7 @@ std::optional<double> displacement_noise(const std::vector<DifferenceEpoch>& epo
     squares.push_back(off.dot(by_doppler.covariance_e.ldlt().solve(off)));
   }
   if (squares.size() < kEnough) return std::nullopt;
-  const auto at = squares.begin() + static_cast<std::ptrdiff_t>(kShare * static_cast<double>(squares.size()));
-  std::ranges::nth_element(squares, at);
-  const double factor = std::sqrt(*at / kChiSquare);
+  const double factor = std::sqrt(quantile(std::move(squares), kShare) / kChiSquare);
   return factor < kMost ? std::optional(std::max(factor, kLeast)) : std::nullopt;
 }
 

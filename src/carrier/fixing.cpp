@@ -162,8 +162,9 @@ class PartialFixing {
   PartialFixing(const std::vector<Fixable>& all, const RelativeState& state, const FixingOptions& options)
       : all_(all), state_(state), options_(options), best_(attempt(all, state, options.success_rate)) {}
 
-  /// All; else without those left float in the previous epoch; else, if the integers are too uncertain, without the least
-  /// certain, if they are not significant, without one satellite, tried in turn, or without the lowest.
+  /// All; else those of known integers; else those of satellites with good codes; else without those left float in the previous
+  /// epoch; else, if the integers are too uncertain, without the least certain, if they are not significant, without one
+  /// satellite, tried in turn, or without the lowest.
   std::optional<Attempt> run(const std::vector<Satellite>& without_last, const std::vector<Fixable>& known,
                              const std::vector<Fixable>& trusted) {
     if (!best_ || done()) return best_;

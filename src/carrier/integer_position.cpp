@@ -156,7 +156,10 @@ std::optional<IntegerPosition> integer_position(const DifferenceEpoch& epoch, co
   if (p.ambiguities.empty()) return std::nullopt;
   for (;;) {
     const std::optional<IntegerAdjustment> adjusted = adjust_integers(p, left_out);
-    if (!adjusted) return std::nullopt;
+    if (!adjusted) {
+      position.pdop = std::numeric_limits<double>::infinity();
+      return position;
+    }
     if (!adjusted->outlier) {
       position.step = fixed.x - (state.x - updated.step);
       position.step.head<3>() = adjusted->u.head<3>();

@@ -15,7 +15,8 @@ struct IntegerPosition {
 /// From the phases that have integers, and nothing else but the delays of the atmosphere: float ambiguities contain codes and
 /// reflections of earlier epochs, which do not average out within a street. Integers whose phases do not agree with the others
 /// (w-test) are left out.
-/// @return none if GLONASS, whose integers need the clock of the codes, is needed
+/// @return its pdop is infinite where the integers do not determine the position; none without phases of other systems than
+/// GLONASS, whose integers need the clock of the codes
 std::optional<IntegerPosition> integer_position(const DifferenceEpoch& epoch, const FloatEpoch& updated,
                                                 const RelativeState& state, const FixedSolution& fixed);
 

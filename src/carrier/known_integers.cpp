@@ -1,7 +1,7 @@
 #include "known_integers.hpp"
 
 #include <algorithm>
-#include <cmath>
+#include <functional>
 #include <set>
 
 namespace coast::carrier {

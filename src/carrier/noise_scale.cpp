@@ -4,6 +4,7 @@
 
 #include "double_differences.hpp"
 #include "pass.hpp"
+#include "quantile.hpp"
 
 namespace coast::carrier {
 
@@ -45,9 +46,7 @@ double largest_code(const std::vector<PpkEpoch>& epochs) {
     for (const SignalResidual& r : epoch.residuals)
       if (!r.phase && r.use != Use::kLeftOut) sizes.push_back(std::abs(r.residual / r.sd));
   if (sizes.empty()) return 0.0;
-  const auto middle = sizes.begin() + static_cast<std::ptrdiff_t>(sizes.size() / 2);
-  std::ranges::nth_element(sizes, middle);
-  return kSigmas * *middle / kMedian;
+  return kSigmas * median(std::move(sizes)) / kMedian;
 }
 
 Sums codes_of(const PpkEpoch& epoch, double largest) {
@@ -131,9 +130,7 @@ double estimate_rate_noise(const std::vector<DifferenceEpoch>& differences, cons
     }
   }
   if (squares.size() < kEnough) return 1.0;
-  const auto middle = squares.begin() + static_cast<std::ptrdiff_t>(squares.size() / 2);
-  std::ranges::nth_element(squares, middle);
-  return std::clamp(std::sqrt(*middle / kMedian), kLeast, kMost);
+  return std::clamp(std::sqrt(median(std::move(squares)) / kMedian), kLeast, kMost);
 }
 
 }  // namespace coast::carrier

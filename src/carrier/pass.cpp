@@ -29,7 +29,7 @@ PpkEpoch alone(const DifferenceEpoch& epoch) {
 
 /// Rows after adjustment to a state: deviation of each from the mean of its group, which is the clock's.
 void add_residuals(const DifferenceEpoch& epoch, const FloatEpoch& updated, const Eigen::VectorXd& step,
-                   const FixedSolution& fixed, PpkEpoch& solved) {
+                   const FixedSolution& fixed, const std::vector<Unknown>& contradicted, PpkEpoch& solved) {
   const DoubleDifferences& dd = updated.dd;
   const Eigen::VectorXd left = dd.B.transpose() * (dd.B * (dd.residual - dd.H * step));
   for (std::size_t i = 0; i < dd.rows.size(); ++i) {
@@ -37,10 +37,15 @@ void add_residuals(const DifferenceEpoch& epoch, const FloatEpoch& updated, cons
     const SatelliteDifference& satellite = epoch.satellites[row.satellite];
     if (row.observable == Observable::kRate) continue;
     const bool phase = row.observable == Observable::kPhase;
+    const BandDifference& band = satellite.bands[row.band];
+    const Unknown ambiguity{Unknown::Kind::kAmbiguity, satellite.satellite, band.band, band.arc};
     const bool is_fixed = phase && std::ranges::find(fixed.satellites, satellite.satellite) != fixed.satellites.end();
-    solved.residuals.push_back({satellite.satellite, satellite.bands[row.band].band, phase,
-                                left(static_cast<Eigen::Index>(i)) * row.sd, row.sd, row.direction,
-                                is_fixed ? SignalResidual::Use::kFixed : SignalResidual::Use::kFloat});
+    const bool is_left_out = phase && std::ranges::find(contradicted, ambiguity) != contradicted.end();
+    const auto use = is_left_out ? SignalResidual::Use::kLeftOut
+                     : is_fixed  ? SignalResidual::Use::kFixed
+                                 : SignalResidual::Use::kFloat;
+    solved.residuals.push_back(
+        {satellite.satellite, band.band, phase, left(static_cast<Eigen::Index>(i)) * row.sd, row.sd, row.direction, use});
   }
 }
 
@@ -111,27 +116,37 @@ struct Chosen {
   bool by_integers = false;
   Eigen::VectorXd step;  ///< of the state, from the linearisation
   Eigen::Matrix3d covariance_e = Eigen::Matrix3d::Zero();
-  std::vector<FixedPair> integers;  ///< those that the phases of the epoch agree with
+  std::vector<FixedPair> integers;    ///< those that the phases of the epoch agree with
+  std::vector<Unknown> contradicted;  ///< ambiguities whose integers they do not agree with
 };
+
+bool with_glonass(const FixedSolution& fixed) {
+  return std::ranges::any_of(fixed.satellites,
+                             [](record::Satellite s) { return s.system == record::SatelliteSystem::kGlonass; });
+}
 
 /// @param pdop  of all satellites
 Chosen choose(const DifferenceEpoch& epoch, const FloatEpoch& updated, const RelativeState& state, const FixedSolution& fixed,
               double pdop) {
-  Chosen as_float{false, updated.step, state.P.topLeftCorner<3, 3>(), fixed.pairs};
-  if (!fixed.fixed) return as_float;
-  Chosen chosen{true, fixed.x - (state.x - updated.step), fixed.P.topLeftCorner<3, 3>(), fixed.pairs};
-  if (const std::optional<IntegerPosition> position = integer_position(epoch, updated, state, fixed)) {
-    pdop = position->pdop;
-    chosen.step = position->step;
-    chosen.covariance_e = position->covariance_e;
+  const auto as_float_with = [&](const Chosen& integers) {
+    return Chosen{false, updated.step, state.P.topLeftCorner<3, 3>(), integers.integers, integers.contradicted};
+  };
+  if (!fixed.fixed) return as_float_with({});
+  Chosen chosen{true, fixed.x - (state.x - updated.step), fixed.P.topLeftCorner<3, 3>(), fixed.pairs, {}};
+  if (std::optional<IntegerPosition> position = integer_position(epoch, updated, state, fixed)) {
+    chosen.contradicted = std::move(position->contradicted);
     std::erase_if(chosen.integers, [&](const FixedPair& pair) {
-      return std::ranges::any_of(position->contradicted,
+      return std::ranges::any_of(chosen.contradicted,
                                  [&](const Unknown& u) { return u == pair.ambiguity || u == pair.reference; });
     });
+    const bool placed = !badly_placed(position->pdop, position->covariance_e);
+    if (placed) {
+      chosen.step = std::move(position->step);
+      chosen.covariance_e = position->covariance_e;
+    }
+    if (placed || !with_glonass(fixed)) return placed ? chosen : as_float_with(chosen);
   }
-  if (!badly_placed(pdop, chosen.covariance_e)) return chosen;
-  as_float.integers = std::move(chosen.integers);
-  return as_float;
+  return badly_placed(pdop, chosen.covariance_e) ? as_float_with(chosen) : chosen;
 }
 
 /// A filter on its way through the epochs.
@@ -160,7 +175,7 @@ class Passage {
     solved.quality = chosen.by_integers ? record::FixQuality::kFixed : record::FixQuality::kFloat;
     solved.r_e = (state.x - updated_.step + chosen.step).head<3>();
     solved.covariance_e = chosen.covariance_e + air_covariance(satellites, state.x.head<3>(), epoch, options_);
-    add_residuals(epoch, updated_, chosen.step, fixed, solved);
+    add_residuals(epoch, updated_, chosen.step, fixed, chosen.contradicted, solved);
     if (options_.fixing.hold && fixed.fixed) hold(fixed);
     integers_ = std::move(chosen.integers);
     return solved;

@@ -10,6 +10,7 @@
 #include "doppler_displacement.hpp"
 #include "pass.hpp"
 #include "phase_velocity.hpp"
+#include "quantile.hpp"
 
 namespace coast::carrier {
 
@@ -33,11 +34,8 @@ class Stages {
 };
 
 /// The value exceeded by one in twenty: single points have outliers.
-double upper_end(std::vector<double> values) {
-  if (values.empty()) return 0.0;
-  const auto at = values.begin() + static_cast<std::ptrdiff_t>(values.size() * 19 / 20);
-  std::ranges::nth_element(values, at);
-  return *at;
+double upper_end(const std::vector<double>& values) {
+  return values.empty() ? 0.0 : quantile(values, 0.95);
 }
 
 /// Atmosphere states required by the baseline.

@@ -5,6 +5,7 @@
 #include <span>
 
 #include "coast/carrier/signals.hpp"
+#include "quantile.hpp"
 
 namespace coast::carrier {
 
@@ -65,9 +66,7 @@ double interval_of(const record::ObservationRecording& receiver) {
   std::vector<double> steps;
   for (std::size_t i = 1; i < receiver.epochs.size(); ++i) steps.push_back(receiver.epochs[i].t - receiver.epochs[i - 1].t);
   if (steps.empty()) return 0.0;
-  const auto middle = steps.begin() + static_cast<std::ptrdiff_t>(steps.size() / 2);
-  std::ranges::nth_element(steps, middle);
-  return *middle;
+  return median(std::move(steps));
 }
 
 double longest_gap(double interval) {

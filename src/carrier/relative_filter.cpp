@@ -53,7 +53,7 @@ Innovation innovation_of(Eigen::MatrixXd H, Eigen::VectorXd v, const RelativeSta
   return in;
 }
 
-/// Of the differences. A row has a handful of unknowns, and the rows of a group have no others but its own ambiguities.
+/// Of the differences, by a sparse H and block by block: a row has a handful of unknowns, and a difference those of its group.
 Innovation innovation_of(const DoubleDifferences& dd, const RelativeState& state) {
   const Eigen::SparseMatrix<double, Eigen::RowMajor> H = dd.H.sparseView();
   Innovation in;
@@ -297,7 +297,7 @@ void RelativeFilter::update(const DifferenceEpoch& epoch, FloatEpoch& result) {
       result.shortfall = out.empty() ? Shortfall::kFewSatellites : Shortfall::kContradiction;
       return;
     }
-    // An error that lasts is not larger for that: codes are tested with the noise of one epoch.
+    // That errors last makes a mean worse, not one measurement: codes are tested with the noise of one epoch.
     const Innovation of_one_epoch = innovation_of(result.dd, state_);
     if (of_one_epoch.S.info() != Eigen::Success || !of_one_epoch.v.allFinite()) {  // the state is invalid
       state_ = RelativeState();
