@@ -23,7 +23,7 @@ void DefectWatch::run() {
   windows_from_ = in_order_from_;
   trials_.assign(sensors, {});
   learn();
-  windows_.fit_inflations();
+  windows_.fit_learnt();
   for (std::size_t b = 0; b < blocks_; ++b) step(b);
   for (std::size_t k = 0; k < sensors; ++k)
     if (trials_[k]) alarms_[trials_[k]->alarm].back = blocks_;
@@ -71,11 +71,26 @@ void DefectWatch::step(std::size_t b) {
       contradict(set, b, test);
       break;
     }
+    if (!stands_out(worst, set, test)) break;
     leave(worst, b, test);
   }
   for (std::size_t k = 0; k < trials_.size(); ++k)
     if (trials_[k] && trials_[k]->since <= b) follow_trial(k, b);
   windows_.absorb(b, in_order_, in_order_from_);
+}
+
+/// Where the others contradict one another too, all are disturbed at once (an impact, vibration) and none is accused. One more
+/// sensor may be defective at the same time.
+bool DefectWatch::stands_out(std::size_t k, ChannelWindows::Set set, const TestValue& test) {
+  constexpr double kInOrder = 0.5;  // of a threshold of some six standard deviations
+  constexpr double kTimesTheOthers = 10.0;
+  const double in_order = std::max(kInOrder, test.excess / kTimesTheOthers);
+  set[k] = false;
+  const SensorTest second = windows_.largest_among(set, windows_from_);
+  if (second.test.excess < in_order) return true;
+  if (second.test.excess < 1.0) return false;
+  set[second.sensor] = false;
+  return members_of(set) >= 3 && windows_.largest_among(set, windows_from_).test.excess < in_order;
 }
 
 void DefectWatch::leave(std::size_t k, std::size_t b, const TestValue& test) {

@@ -23,7 +23,7 @@ class DefectWatch {
   /// @param recovery  blocks in order before a sensor is used again
   DefectWatch(ChannelWindows& windows, std::size_t blocks, int channel, std::size_t recovery);
 
-  /// First a pass over the record with all sensors, for the size of the statistics in motion; then the detection itself.
+  /// First a pass over the record with all sensors, for the size of the statistics in this record; then the detection itself.
   void run();
   [[nodiscard]] const std::vector<Alarm>& alarms() const { return alarms_; }
   /// `found` in blocks.
@@ -40,6 +40,7 @@ class DefectWatch {
   void learn();
   void step(std::size_t b);
   [[nodiscard]] ChannelWindows::Set there(std::size_t b) const;
+  [[nodiscard]] bool stands_out(std::size_t k, ChannelWindows::Set set, const TestValue& test);
   void leave(std::size_t k, std::size_t b, const TestValue& test);
   void contradict(const ChannelWindows::Set& set, std::size_t b, const TestValue& test);
   void follow_trial(std::size_t k, std::size_t b);

@@ -12,6 +12,7 @@
 #include "defect_kind.hpp"
 #include "defect_watch.hpp"
 #include "parity_outages.hpp"
+#include "parity_response.hpp"
 
 namespace coast::array {
 
@@ -39,10 +40,10 @@ struct ChannelResult {
   std::vector<std::pair<double, double>> noise;  ///< [sensor] median variances: sample, block
 };
 
-ChannelResult watch_channel(const Signals& signals, const ParityBlocks& blocks, int channel, double share,
-                            const DefectOptions& options) {
+ChannelResult watch_channel(const Signals& signals, const ParityBlocks& blocks, const SensorSpread& spread, int channel,
+                            double share, const DefectOptions& options) {
   const ChannelNoise noise(signals, blocks, channel, options.noise_memory_s);
-  ChannelWindows windows(signals, blocks, noise, channel, share);
+  ChannelWindows windows(signals, blocks, noise, spread, channel, share);
   const auto recovery = static_cast<std::size_t>(std::max(1.0, std::round(options.recovery_s / blocks.seconds)));
   DefectWatch watch(windows, blocks.count, channel, recovery);
   watch.run();
@@ -120,12 +121,14 @@ DefectReport find_defects(const Signals& signals, const DefectOptions& options) 
   const std::size_t sensors = signals.sensors.size(), samples = signals.samples();
   const double share = options.false_alarms_per_hour / (kTestsPerChannel * kChannels * static_cast<double>(sensors));
   const Outages outages = find_outages(signals, share);
-  ParityBlocks blocks = make_blocks(signals, outages.present);
-  remove_constant_response(blocks);
+  const Signals compared = without_constant_response(signals, outages.present, make_blocks(signals, outages.present));
+  const ParityBlocks blocks = make_blocks(compared, outages.present);
+
+  const SensorSpread spread = sensor_spread(compared, blocks);
 
   std::array<ChannelResult, kChannels> channels;
   tbb::parallel_for(0, kChannels, [&](int c) {
-    channels.at(static_cast<std::size_t>(c)) = watch_channel(signals, blocks, c, share, options);
+    channels.at(static_cast<std::size_t>(c)) = watch_channel(compared, blocks, spread, c, share, options);
   });
 
   DefectReport report;
@@ -149,7 +152,7 @@ DefectReport find_defects(const Signals& signals, const DefectOptions& options) 
   }
   const auto recovery = static_cast<std::size_t>(options.recovery_s / signals.dt);
   report.defects = joined(found, recovery, false);
-  for (Defect& defect : report.defects) name_defect(signals, outages.present, blocks, variance, recovery, defect);
+  for (Defect& defect : report.defects) name_defect(compared, outages.present, blocks, variance, recovery, defect);
   const std::vector<Defect> gone = joined(outages.defects, blocks.length, true);
   report.defects.insert(report.defects.end(), gone.begin(), gone.end());
   std::stable_sort(report.defects.begin(), report.defects.end(),

@@ -22,10 +22,8 @@ struct ParityBlocks {
   Eigen::MatrixXd common;
   /// [sensor] median over the record of mean - common.
   std::vector<Channels> bias;
-  /// 2 x count (rates, forces): power of the motion, slow and within blocks, for the growth of residuals with dynamics.
+  /// 2 x count (rates, forces): power of the motion, slow and within blocks.
   Eigen::Matrix2Xd power;
-  /// 2 x count: mean square of the common signal's sample-to-sample differences.
-  Eigen::Matrix2Xd roughness;
 
   [[nodiscard]] bool has(std::size_t sensor, int channel, std::size_t block) const {
     return ((whole[sensor][block] >> channel) & 1U) != 0;
@@ -34,10 +32,6 @@ struct ParityBlocks {
 
 /// @param present  [sensor][column] bit c: a value is available
 [[nodiscard]] ParityBlocks make_blocks(const Signals& signals, const std::vector<std::vector<std::uint8_t>>& present);
-
-/// Regresses each sensor's residual on the motion (three axes and the channel's own rate of change) over the whole record and
-/// subtracts the result from its means: constant misalignment, scale and lag. Bisquare weights: a third of the record may be
-void remove_constant_response(ParityBlocks& blocks);
 
 /// Median; the values are reordered. 0 if there are none.
 [[nodiscard]] double median_of(std::vector<double>& values);

@@ -1,5 +1,6 @@
-// The past of ChannelWindows: levels, and inflation by motion.
+// The past of ChannelWindows: levels, and what the record shows of the tests.
 
+#include <algorithm>
 #include <cmath>
 
 #include "parity_windows.hpp"
@@ -10,6 +11,11 @@ namespace {
 
 constexpr double kMedianOfOneDegree = 0.4549;  // of a chi-square
 constexpr double kMedianOfThreeDegrees = 2.3660;
+
+/// Blocks from one window that is learnt to the next: a quarter of its length.
+std::size_t hop_of(std::size_t window) {
+  return std::max<std::size_t>(1, window / 4);
+}
 
 }  // namespace
 
@@ -71,38 +77,76 @@ void ChannelWindows::move_to(std::size_t k, std::size_t window, const Set& set, 
   }
 }
 
+/// Median of a window's mean square of nu degrees of freedom over its mean (Wilson & Hilferty 1931).
+double ChannelWindows::median_noise_ratio(std::size_t k, std::size_t blocks) const {
+  return std::pow(1.0 - 2.0 / (9.0 * dof(k) * static_cast<double>(blocks)), 3);
+}
+
 void ChannelWindows::learn(std::size_t b, const Set& set, const std::vector<std::size_t>& from) {
   for (std::size_t k = 0; k < sensors_; ++k) {
     for (std::size_t i = 0; i < kLevelWindows.size(); ++i) {
       const std::size_t blocks = kLevelWindows[i];
-      if ((b + 1) % blocks != 0) continue;
+      if ((b + 1) % hop_of(blocks) != 0) continue;
       const LevelResidual level = level_residual(k, i, set, from);
       if (level.valid)
-        level_ratios_[k][i].push_back({mean_power(blocks), level.value * level.value / level.variance / kMedianOfOneDegree});
+        level_learnt_[i][k].ratios.push_back(
+            {mean_of(spread_of_means_, blocks), level.value * level.value / level.variance / kMedianOfOneDegree});
     }
     for (std::size_t i = 0; i < kNoiseWindows.size(); ++i) {
       const std::size_t blocks = kNoiseWindows[i];
-      const double ratio = (b + 1) % blocks == 0 ? noise_ratio(k, blocks, from[k]) : -1.0;
-      const double median = std::pow(1.0 - 2.0 / (9.0 * dof(k) * static_cast<double>(blocks)), 3);
-      if (ratio >= 0.0) noise_ratios_[k][i].push_back({mean_roughness(blocks), ratio / median});
+      const double ratio = (b + 1) % hop_of(blocks) == 0 ? noise_ratio(k, blocks, from[k]) : -1.0;
+      const double median = median_noise_ratio(k, blocks);
+      if (ratio >= 0.0) noise_learnt_[i][k].ratios.push_back({mean_of(spread_of_samples_, blocks), ratio / median});
     }
     for (std::size_t i = 0; i < kMotionWindows.size(); ++i) {
       const std::size_t blocks = kMotionWindows[i];
-      const double chi2 = (b + 1) % blocks == 0 ? motion_chi2(k, blocks, from[k]) : -1.0;
-      if (chi2 >= 0.0) motion_ratios_[k][i].push_back({mean_power(blocks), chi2 / kMedianOfThreeDegrees});
+      const double chi2 = (b + 1) % hop_of(blocks) == 0 ? motion_chi2(k, blocks, from[k]) : -1.0;
+      if (chi2 >= 0.0) motion_learnt_[i][k].ratios.push_back({motion_of(blocks), chi2 / kMedianOfThreeDegrees});
     }
   }
 }
 
-void ChannelWindows::fit_inflations() {
+/// Pieces of ten seconds, a sixtieth of a short record, a window at least.
+TailFit ChannelWindows::tail_fit(std::size_t window) const {
+  constexpr double kPiece = 10.0;
+  constexpr double kPieces = 60.0;
+  const double seconds = std::min(kPiece, blocks_.seconds * static_cast<double>(blocks_.count) / kPieces);
+  TailFit fit;
+  const std::size_t length = std::max(window, static_cast<std::size_t>(seconds / blocks_.seconds));
+  fit.piece = length / hop_of(window);
+  fit.chance = share_per_hour_ * static_cast<double>(length) * blocks_.seconds / 3600.0;
+  return fit;
+}
+
+void ChannelWindows::fit_tests(std::vector<LearntTest>& sensors, std::size_t window,
+                               const std::vector<double>& thresholds) const {
+  std::vector<LargestRatios> largest;
+  std::vector<Growth> growth(sensors_);
+  std::vector<TailFit> fits(sensors_, tail_fit(window));
   for (std::size_t k = 0; k < sensors_; ++k) {
-    for (std::size_t i = 0; i < kLevelWindows.size(); ++i) level_inflation_[k][i] = fit_inflation(level_ratios_[k][i]);
-    for (std::size_t i = 0; i < kNoiseWindows.size(); ++i) noise_inflation_[k][i] = fit_inflation(noise_ratios_[k][i]);
-    for (std::size_t i = 0; i < kMotionWindows.size(); ++i) motion_inflation_[k][i] = fit_inflation(motion_ratios_[k][i]);
+    fits[k].threshold = thresholds[k];
+    growth[k].inflation = fit_inflation(sensors[k].ratios);
+    largest.push_back(largest_ratios(sensors[k].ratios, growth[k].inflation, fits[k].piece));
+    sensors[k].ratios = {};
   }
-  level_ratios_.assign(sensors_, {});
-  noise_ratios_.assign(sensors_, {});
-  motion_ratios_.assign(sensors_, {});
+  fit_tails(largest, fits, growth);
+  for (std::size_t k = 0; k < sensors_; ++k) {
+    sensors[k].own = growth[k];
+    sensors[k].usual = usual_growth(growth);
+  }
+}
+
+void ChannelWindows::fit_learnt() {
+  for (std::size_t i = 0; i < kLevelWindows.size(); ++i)
+    fit_tests(level_learnt_[i], kLevelWindows[i], std::vector(sensors_, level_threshold_[i] / kMedianOfOneDegree));
+  for (std::size_t i = 0; i < kNoiseWindows.size(); ++i) {
+    std::vector<double> thresholds;
+    for (std::size_t k = 0; k < sensors_; ++k)
+      thresholds.push_back(noise_threshold_[i][k] / median_noise_ratio(k, kNoiseWindows[i]));
+    fit_tests(noise_learnt_[i], kNoiseWindows[i], thresholds);
+  }
+  for (std::size_t i = 0; i < kMotionWindows.size(); ++i)
+    fit_tests(motion_learnt_[i], kMotionWindows[i], std::vector(sensors_, motion_threshold_[i] / kMedianOfThreeDegrees));
   start_levels();
   std::fill(run_.begin(), run_.end(), 0);
   std::fill(valid_run_.begin(), valid_run_.end(), 0);

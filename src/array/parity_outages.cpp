@@ -174,6 +174,8 @@ Outages find_outages(const Signals& signals, double per_hour) {
   Outages outages;
   for (const SensorSignals& sensor : signals.sensors) {
     auto& present = outages.present.emplace_back(sensor.usable);
+    for (std::size_t n = 0; n < sensor.limited.size(); ++n)
+      present[n] |= sensor.limited[n];  // the end of a range is no dropout
     for (std::size_t n = 0; n < present.size(); ++n)
       for (int c = 0; c < kChannels; ++c)
         if (!std::isfinite(sensor.values(c, static_cast<Eigen::Index>(n))))
@@ -189,6 +191,11 @@ Outages find_outages(const Signals& signals, double per_hour) {
         for (std::size_t n = defect.from; n < defect.to; ++n)
           outages.present[k][n] = static_cast<std::uint8_t>(outages.present[k][n] & ~(1U << c));
     }
+  }
+  for (std::size_t k = 0; k < signals.sensors.size(); ++k) {
+    const std::vector<std::uint8_t>& limited = signals.sensors[k].limited;
+    for (std::size_t n = 0; n < limited.size(); ++n)
+      outages.present[k][n] = static_cast<std::uint8_t>(outages.present[k][n] & ~limited[n]);
   }
   return outages;
 }

@@ -10,23 +10,27 @@ namespace {
 
 constexpr std::size_t kStartBlocks = 50;  // first levels: medians over 5 s
 
+Eigen::VectorXd running_sums(const Eigen::VectorXd& values) {
+  Eigen::VectorXd sums = Eigen::VectorXd::Zero(values.size() + 1);
+  for (Eigen::Index i = 0; i < values.size(); ++i) sums(i + 1) = sums(i) + values(i);
+  return sums;
+}
+
 }  // namespace
 
-ChannelWindows::ChannelWindows(const Signals& signals, const ParityBlocks& blocks, const ChannelNoise& noise, int channel,
-                               double share_per_hour)
+ChannelWindows::ChannelWindows(const Signals& signals, const ParityBlocks& blocks, const ChannelNoise& noise,
+                               const SensorSpread& spread, int channel, double share_per_hour)
     : signals_(signals),
       blocks_(blocks),
       noise_(noise),
       channel_(channel),
+      share_per_hour_(share_per_hour),
       sensors_(signals.sensors.size()),
       run_(sensors_, 0),
-      valid_run_(sensors_, 0),
-      level_inflation_(sensors_),
-      noise_inflation_(sensors_),
-      motion_inflation_(sensors_),
-      level_ratios_(sensors_),
-      noise_ratios_(sensors_),
-      motion_ratios_(sensors_) {
+      valid_run_(sensors_, 0) {
+  for (auto& window : level_learnt_) window.resize(sensors_);
+  for (auto& window : noise_learnt_) window.resize(sensors_);
+  for (auto& window : motion_learnt_) window.resize(sensors_);
   sum_.setZero(at(sensors_), at(blocks.count + 1));
   for (std::size_t k = 0; k < sensors_; ++k)
     for (std::size_t b = 0; b < blocks.count; ++b)
@@ -35,8 +39,11 @@ ChannelWindows::ChannelWindows(const Signals& signals, const ParityBlocks& block
   variance_ = ratio_ = residual_;
   cross_.assign(sensors_, Eigen::Matrix4Xd::Zero(4, at(blocks.count + 1)));
   motion_sums();
+  const auto group = static_cast<std::size_t>(channel / 3);
+  spread_of_means_ = {running_sums(spread.of_means.at(group).now), running_sums(spread.of_means.at(group).about)};
+  spread_of_samples_ = {running_sums(spread.of_samples.at(group).now), running_sums(spread.of_samples.at(group).about)};
   start_levels();
-  set_thresholds(share_per_hour);
+  set_thresholds();
 }
 
 void ChannelWindows::motion_sums() {
@@ -44,14 +51,12 @@ void ChannelWindows::motion_sums() {
   const Eigen::Vector3d centre = blocks_.common.middleRows<3>(3 * group).rowwise().mean();
   motion_.setZero(9, at(blocks_.count + 1));
   power_.setZero(at(blocks_.count + 1));
-  roughness_.setZero(at(blocks_.count + 1));
   for (Eigen::Index b = 0; b < at(blocks_.count); ++b) {
     const Eigen::Vector3d x = blocks_.common.block<3, 1>(3 * group, b) - centre;
     Eigen::Matrix<double, 9, 1> terms;
     terms << x, x(0) * x(0), x(0) * x(1), x(0) * x(2), x(1) * x(1), x(1) * x(2), x(2) * x(2);
     motion_.col(b + 1) = motion_.col(b) + terms;
     power_(b + 1) = power_(b) + blocks_.power(group, b);
-    roughness_(b + 1) = roughness_(b) + blocks_.roughness(group, b);
   }
 }
 
@@ -74,27 +79,23 @@ void ChannelWindows::start_levels() {
   }
 }
 
-void ChannelWindows::set_thresholds(double share_per_hour) {
+void ChannelWindows::set_thresholds() {
   constexpr double kShorterTail = 0.85;  // of the degrees of freedom: unequal weights in a sum of squares lengthen its tail
   for (std::size_t i = 0; i < kLevelWindows.size(); ++i) {
-    const double u = normal_threshold(share_per_hour, blocks_.seconds, kLevelWindows[i], true);
+    const double u = normal_threshold(share_per_hour_, blocks_.seconds, kLevelWindows[i], true);
     level_threshold_[i] = for_uncertain_scale(u * u, noise_.level_uncertainty());
   }
   for (std::size_t i = 0; i < kNoiseWindows.size(); ++i) {
     noise_threshold_[i].resize(sensors_);
     for (std::size_t k = 0; k < sensors_; ++k) {
       const double nu = kShorterTail * noise_.block_dof(k) * static_cast<double>(kNoiseWindows[i]);
-      const double q = chi2_threshold(nu, share_per_hour, blocks_.seconds, kNoiseWindows[i]);
+      const double q = chi2_threshold(nu, share_per_hour_, blocks_.seconds, kNoiseWindows[i]);
       noise_threshold_[i][k] = for_uncertain_scale(q, noise_.sample_uncertainty()) / nu;
     }
   }
   for (std::size_t i = 0; i < kMotionWindows.size(); ++i)
-    motion_threshold_[i] = for_uncertain_scale(chi2_threshold(3.0, share_per_hour, blocks_.seconds, kMotionWindows[i]),
+    motion_threshold_[i] = for_uncertain_scale(chi2_threshold(3.0, share_per_hour_, blocks_.seconds, kMotionWindows[i]),
                                                noise_.level_uncertainty());
-}
-
-double ChannelWindows::mean_roughness(std::size_t window) const {
-  return (roughness_(at(b_ + 1)) - roughness_(at(b_ + 1 - window))) / static_cast<double>(window);
 }
 
 /// Variance of a window's mean of sensor k relative to its own past: the past's, the walk since then, the mean's noise.
@@ -130,16 +131,43 @@ void ChannelWindows::enter(std::size_t b, const Set& set) {
   const bool again = entered_ == b + 1;
   b_ = b;
   entered_ = b + 1;
+  if (!again)
+    for (std::size_t k = 0; k < sensors_; ++k) run_[k] = has(k, b) ? run_[k] + 1 : 0;
+  residuals_of_block(set, again);
+}
+
+void ChannelWindows::residuals_of_block(const Set& set, bool again) {
   const auto length = at(blocks_.length);
   Eigen::MatrixXd own(at(sensors_), length);
   for (std::size_t k = 0; k < sensors_; ++k) {
-    if (!again) run_[k] = has(k, b) ? run_[k] + 1 : 0;
-    if (has(k, b)) {
-      own.row(at(k)) = signals_.sensors[k].values.row(channel_).segment(at(b) * length, length);
-      own.row(at(k)).array() -= own.row(at(k)).mean();
-    }
+    if (!has(k, b_)) continue;
+    own.row(at(k)) = signals_.sensors[k].values.row(channel_).segment(at(b_) * length, length);
+    own.row(at(k)).array() -= own.row(at(k)).mean();
   }
   for (std::size_t k = 0; k < sensors_; ++k) residual_of_block(k, set, own, again);
+}
+
+/// The last blocks, as long as the longest window, are repeated with the smaller set and then put back.
+SensorTest ChannelWindows::largest_among(const Set& rest, const std::vector<std::size_t>& from) {
+  const std::size_t last = b_, count = std::min(last + 1, kMotionWindows.back());
+  const auto first = at(last + 1 - count), width = at(count);
+  const Eigen::MatrixXd residual = residual_.middleCols(first, width), variance = variance_.middleCols(first, width),
+                        ratio = ratio_.middleCols(first, width);
+  std::vector<Eigen::Matrix4Xd> cross;
+  for (const Eigen::Matrix4Xd& sums : cross_) cross.emplace_back(sums.middleCols(first + 1, width));
+  for (b_ = last + 1 - count; b_ < last; ++b_) residuals_of_block(rest, true);
+  residuals_of_block(rest, true);
+  SensorTest most;
+  for (std::size_t j = 0; j < sensors_; ++j) {
+    if (!rest[j]) continue;
+    const TestValue own = largest(j, rest, from);
+    if (own.excess > most.test.excess) most = {j, own};
+  }
+  residual_.middleCols(first, width) = residual;
+  variance_.middleCols(first, width) = variance;
+  ratio_.middleCols(first, width) = ratio;
+  for (std::size_t j = 0; j < sensors_; ++j) cross_[j].middleCols(first + 1, width) = cross[j];
+  return most;
 }
 
 /// Relative to the mean of the others weighted by their noise: the block's mean, and its samples about it.
@@ -192,23 +220,23 @@ double ChannelWindows::motion_chi2(std::size_t k, std::size_t blocks, std::size_
 }
 
 void ChannelWindows::keep_noise_and_motion(std::size_t k, std::size_t since, TestValue& best) const {
-  const auto keep = [&](TestValue::Kind kind, std::size_t window, double square, double threshold, double statistic) {
-    const double excess = std::sqrt(square / threshold);
-    if (excess > best.excess) best = {kind, window, excess, statistic, square};
+  const auto keep = [&](const TestValue& value) {
+    if (value.excess > best.excess) best = value;
   };
   for (std::size_t i = 0; i < kNoiseWindows.size(); ++i) {
     const std::size_t blocks = kNoiseWindows[i];
     const double ratio = noise_ratio(k, blocks, since);
     if (ratio < 0.0) continue;
-    const double s = ratio / noise_inflation_[k][i].at(mean_roughness(blocks));
+    const double s = ratio / noise_learnt_[i][k].factor(mean_of(spread_of_samples_, blocks));
     const double spread = std::sqrt(2.0 / (9.0 * dof(k) * static_cast<double>(blocks)));
-    keep(TestValue::Kind::kNoise, i, s, noise_threshold_[i][k], (std::cbrt(s) - 1.0 + spread * spread) / spread);
+    const auto normal_score = [spread](double square) { return (std::cbrt(square) - 1.0 + spread * spread) / spread; };
+    keep({TestValue::Kind::kNoise, i, normal_score(s) / normal_score(noise_threshold_[i][k]), normal_score(s), s});
   }
   for (std::size_t i = 0; i < kMotionWindows.size(); ++i) {
     const double chi2 = motion_chi2(k, kMotionWindows[i], since);
     if (chi2 < 0.0) continue;
-    const double q = chi2 / motion_inflation_[k][i].at(mean_power(kMotionWindows[i]));
-    keep(TestValue::Kind::kMotion, i, q, motion_threshold_[i], std::sqrt(q));
+    const double q = chi2 / motion_learnt_[i][k].factor(motion_of(kMotionWindows[i]));
+    keep({TestValue::Kind::kMotion, i, std::sqrt(q / motion_threshold_[i]), std::sqrt(q), q});
   }
 }
 
@@ -217,7 +245,8 @@ TestValue ChannelWindows::largest(std::size_t k, const Set& set, const std::vect
   for (std::size_t i = 0; i < kLevelWindows.size(); ++i) {
     const LevelResidual level = level_residual(k, i, set, from);
     if (!level.valid) continue;
-    const double q = level.value * level.value / level.variance / level_inflation_[k][i].at(mean_power(kLevelWindows[i]));
+    const double q =
+        level.value * level.value / level.variance / level_learnt_[i][k].factor(mean_of(spread_of_means_, kLevelWindows[i]));
     const double excess = std::sqrt(q / level_threshold_[i]);
     if (excess > best.excess) best = {TestValue::Kind::kLevel, i, excess, std::sqrt(q), 1.0};
   }
@@ -237,7 +266,7 @@ TestValue ChannelWindows::largest_on_trial(std::size_t k, std::size_t since) con
     const double now = (sum(b_ + 1) - sum(b_ + 1 - blocks)) / length;
     const double variance =
         variance_(at(k), at(b_)) * (1.0 / before + 1.0 / length) + noise_.walk_variance(k) * (before + length) / 3.0;
-    const double q = (now - mean) * (now - mean) / variance / level_inflation_[k][i].at(mean_power(blocks));
+    const double q = (now - mean) * (now - mean) / variance / level_learnt_[i][k].factor(mean_of(spread_of_means_, blocks));
     const double excess = std::sqrt(q / level_threshold_[i]);
     if (excess > best.excess) best = {TestValue::Kind::kLevel, i, excess, std::sqrt(q), 1.0};
   }

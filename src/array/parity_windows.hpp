@@ -1,16 +1,18 @@
 #pragma once
 // The residuals of one channel and their tests over windows of blocks. Private to the room.
 
+#include <algorithm>
 #include <array>
 #include <utility>
 #include <vector>
 
 #include "parity_noise.hpp"
+#include "parity_spread.hpp"
 #include "parity_thresholds.hpp"
 
 namespace coast::array {
 
-/// A test and its result: `excess` is the statistic over its threshold, both as standard deviations.
+/// A test and its result: `excess` is the statistic over its threshold, both as standard deviations of a normal.
 struct TestValue {
   enum class Kind : std::uint8_t { kNone, kLevel, kNoise, kMotion };
   Kind kind = Kind::kNone;
@@ -20,19 +22,41 @@ struct TestValue {
   double ratio = 1.0;  ///< kNoise: mean square over the usual one
 };
 
+struct SensorTest {
+  std::size_t sensor = 0;
+  TestValue test;
+};
+
+/// What the record shows of a test of one sensor.
+struct LearntTest {
+  std::vector<RatioAtSpread> ratios;  ///< until the growth is known
+  Growth own, usual;                  ///< of this sensor; median over all
+
+  /// Factor on the threshold. What a sensor shows beyond all others is a defect of it, also where it lasts for most of the
+  /// record.
+  [[nodiscard]] double factor(const SpreadOfWindow& spread) const {
+    constexpr double kMostGrowth = 1.2;
+    constexpr double kMostTail = 1.5;
+    return std::min(own.inflation.at(spread.now), kMostGrowth * usual.inflation.at(spread.now)) *
+           std::min(own.tail(spread), kMostTail * usual.tail(spread));
+  }
+};
+
 /// Statistics of one channel's K sensors at a block, against sets of sensors that are in order.
 class ChannelWindows {
  public:
   using Set = std::vector<bool>;
 
   /// @param share_per_hour  false alarms of each test
-  ChannelWindows(const Signals& signals, const ParityBlocks& blocks, const ChannelNoise& noise, int channel,
-                 double share_per_hour);
+  ChannelWindows(const Signals& signals, const ParityBlocks& blocks, const ChannelNoise& noise, const SensorSpread& spread,
+                 int channel, double share_per_hour);
 
   /// Residuals of all sensors at block b relative to the available ones of the set. Repeated for the same b with a smaller set.
   void enter(std::size_t b, const Set& set);
   /// Largest test of a sensor in the set at the last entered block; windows begin at `from[k]` or later.
   [[nodiscard]] TestValue largest(std::size_t k, const Set& set, const std::vector<std::size_t>& from) const;
+  /// Largest test among the sensors of a smaller set than the entered one, with residuals relative to one another alone.
+  [[nodiscard]] SensorTest largest_among(const Set& rest, const std::vector<std::size_t>& from);
   /// Largest test of a sensor on trial since block `since` relative to the mean of its own residual since then.
   [[nodiscard]] TestValue largest_on_trial(std::size_t k, std::size_t since) const;
   /// Adds the block that has left each window to the past, for sensors in the set since `in_order_from`.
@@ -44,9 +68,9 @@ class ChannelWindows {
   /// Moves the levels of k at all windows to its level in one window.
   void move_to(std::size_t k, std::size_t window, const Set& set, const std::vector<std::size_t>& from);
 
-  /// Squares at block b for the fit of the inflation; windows that do not overlap.
+  /// Squares at block b for the fit of the tests; windows that do not overlap.
   void learn(std::size_t b, const Set& set, const std::vector<std::size_t>& from);
-  void fit_inflations();
+  void fit_learnt();
 
   /// Residual of sensor k at block i, and its variance; absent blocks have variance 0.
   [[nodiscard]] double residual(std::size_t k, std::size_t i) const { return residual_(at(k), at(i)); }
@@ -76,10 +100,23 @@ class ChannelWindows {
   static Eigen::Index at(std::size_t i) { return static_cast<Eigen::Index>(i); }
   void start_levels();
   void motion_sums();
+  void residuals_of_block(const Set& set, bool again);
   void residual_of_block(std::size_t k, const Set& set, const Eigen::MatrixXd& own, bool again);
-  void set_thresholds(double share_per_hour);
-  [[nodiscard]] double mean_power(std::size_t window) const { return power(b_ + 1 - window, b_); }
-  [[nodiscard]] double mean_roughness(std::size_t window) const;
+  void set_thresholds();
+  [[nodiscard]] double median_noise_ratio(std::size_t k, std::size_t blocks) const;
+  [[nodiscard]] TailFit tail_fit(std::size_t window) const;
+  void fit_tests(std::vector<LearntTest>& sensors, std::size_t window, const std::vector<double>& thresholds) const;
+  /// Means over the window.
+  [[nodiscard]] SpreadOfWindow mean_of(const SpreadSeries& running_sums, std::size_t window) const {
+    const auto mean = [&](const Eigen::VectorXd& sums) {
+      return (sums(at(b_ + 1)) - sums(at(b_ + 1 - window))) / static_cast<double>(window);
+    };
+    return {mean(running_sums.now), mean(running_sums.about)};
+  }
+  /// For a response to motion: errors of the response grow with the motion itself.
+  [[nodiscard]] SpreadOfWindow motion_of(std::size_t window) const {
+    return {power(b_ + 1 - window, b_), mean_of(spread_of_means_, window).about};
+  }
   [[nodiscard]] bool all_there(std::size_t k, std::size_t window) const { return run_[k] >= window; }
   [[nodiscard]] LevelResidual level_residual(std::size_t k, std::size_t window, const Set& set,
                                              const std::vector<std::size_t>& from) const;
@@ -92,6 +129,7 @@ class ChannelWindows {
   const ParityBlocks& blocks_;
   const ChannelNoise& noise_;
   int channel_;
+  double share_per_hour_;
   std::size_t sensors_;
   std::size_t b_ = 0;
   std::size_t entered_ = 0;                      ///< number of blocks
@@ -101,14 +139,15 @@ class ChannelWindows {
   std::array<std::vector<double>, 3> level_, level_uncertainty_;  ///< of the past, by window and sensor
   Eigen::MatrixXd motion_;                              ///< 9 x (blocks + 1): running sums of x and the upper part of x x'
   std::vector<Eigen::Matrix4Xd> cross_;                 ///< [sensor] 4 x (blocks + 1): running sums of residual, x residual
-  Eigen::VectorXd power_, roughness_;                   ///< running sums
+  Eigen::VectorXd power_;                               ///< running sums
+  SpreadSeries spread_of_means_, spread_of_samples_;    ///< running sums
   std::array<double, 3> level_threshold_{};             ///< squared
   std::array<std::vector<double>, 2> noise_threshold_;  ///< by sensor, of the ratio
   std::array<double, 2> motion_threshold_{};
-  std::vector<std::array<MotionInflation, 3>> level_inflation_;
-  std::vector<std::array<MotionInflation, 2>> noise_inflation_, motion_inflation_;
-  std::vector<std::array<std::vector<RatioAtPower>, 3>> level_ratios_;
-  std::vector<std::array<std::vector<RatioAtPower>, 2>> noise_ratios_, motion_ratios_;
+  template <std::size_t Windows>
+  using Learnt = std::array<std::vector<LearntTest>, Windows>;  ///< [window][sensor]
+  Learnt<3> level_learnt_;
+  Learnt<2> noise_learnt_, motion_learnt_;
 };
 
 }  // namespace coast::array

@@ -84,16 +84,16 @@ TEST(Defects, NoiseLevelsAreThoseSimulated) {
   const std::vector<double> sd{0.01, 0.02, 0.03, 0.015};
   const DefectReport report = find_defects(plain_array(sd, 30000, 1));
   ASSERT_EQ(report.noise.size(), 4U);
-  // Medians over 3000 blocks of 9 degrees: 1 % of a residual's sd; solving for the quietest triples it. A block's mean has a
-  // tenth of the variance. Its estimate is the larger of two, the worse of which is a median of 600 squares: 2.34/sqrt(600) of
-  // a residual's variance, which the K equations hand on to the sensor's own; four sd of that.
+  // Medians over 3000 blocks of 9 degrees: 1 % of a residual's sd; solving for the quietest triples it; four sd of that. A
+  // block's mean has a tenth of the variance. Its estimate is the larger of two, the worse of which is a median of 600
+  // squares: 2.34/sqrt(600) of a residual's variance, which the K equations hand on to the sensor's own; four sd of that.
   double sum = 0.0;
   for (const double one : sd) sum += one * one;
   for (std::size_t k = 0; k < sd.size(); ++k) {
     const double own = sd[k] * sd[k] * 0.5;  // 1 - 2/K
     const double relative = 2.34 / std::sqrt(600.0) * (own + sum / 16.0) / own / 2.0;
     for (int c = 0; c < kChannels; ++c) {
-      EXPECT_NEAR(report.noise[k].sample_sd(c) / sd[k], 1.0, 0.08) << k << c;
+      EXPECT_NEAR(report.noise[k].sample_sd(c) / sd[k], 1.0, 0.12) << k << c;
       EXPECT_NEAR(report.noise[k].block_sd(c) / (sd[k] / std::sqrt(10.0)), 1.0, 4.0 * relative) << k << c;
     }
   }
@@ -214,6 +214,41 @@ TEST(Defects, ImperfectLagsAndMountingAreNotDefects) {
     }
   }
   EXPECT_TRUE(find_defects(signals).defects.empty());
+}
+
+/// Every 7 s all sensors are knocked for 0.3 s, each in its own way: noise of some twenty times the usual, of a size that is
+/// drawn, within a factor of two, for each sensor and axis.
+TEST(Defects, KnocksThatEachSensorTakesInItsOwnWayAccuseNone) {
+  const std::vector<double> sd{0.01, 0.01, 0.015, 0.01, 0.012};
+  Signals signals = plain_array(sd, 30000, 11);
+  std::mt19937_64 random(12);
+  std::normal_distribution<double> normal;
+  std::uniform_real_distribution<double> own(0.7, 1.4);
+  for (Eigen::Index knock = 1000; knock + 30 < 30000; knock += 700)
+    for (SensorSignals& sensor : signals.sensors)
+      for (int c = 0; c < kChannels; ++c) {
+        const double size = 0.2 * own(random);
+        for (Eigen::Index n = knock; n < knock + 30; ++n) sensor.values(c, n) += size * normal(random);
+      }
+  EXPECT_TRUE(find_defects(signals).defects.empty());
+  // .. and do not hide one that is: a constant of a third of a knock.
+  inject(signals, {DefectKind::kBiasJump, 2, 1, 15200, 30000, 0.07}, 3);
+  const DefectReport report = find_defects(signals);
+  EXPECT_NE(defect_in(report, 2, 1, 15200, 15400), nullptr);
+  for (const Defect& defect : report.defects) EXPECT_EQ(defect.sensor, 2U) << defect.from;
+}
+
+TEST(Defects, ValuesAtTheEndOfARangeAreNotCompared) {
+  Signals signals = plain_array({0.01, 0.01, 0.01, 0.01}, 12000, 13);
+  for (Eigen::Index n = 5000; n < 5200; ++n) signals.sensors[1].values(0, n) -= 1.0;
+  const DefectReport told = find_defects(signals);
+  EXPECT_NE(defect_in(told, 1, 0, 5000, 5200), nullptr);
+  signals.sensors[1].limited.assign(12000, 0);
+  for (std::size_t n = 5000; n < 5200; ++n) {
+    signals.sensors[1].limited[n] = 0x07;
+    signals.sensors[1].usable[n] = kAllUsable & ~0x07;
+  }
+  EXPECT_TRUE(find_defects(signals).defects.empty());  // nor are they a dropout
 }
 
 TEST(Defects, FalseAlarmsStayBelowTheStatedRate) {

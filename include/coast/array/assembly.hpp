@@ -9,6 +9,7 @@
 #include "coast/array/alignment.hpp"
 #include "coast/array/defects.hpp"
 #include "coast/array/mounting.hpp"
+#include "coast/array/saturation.hpp"
 #include "coast/array/signals.hpp"
 #include "coast/record/imu.hpp"
 
@@ -35,14 +36,16 @@ struct Assembly {
   std::vector<SensorFrame> frames;
   std::vector<std::optional<LagCurve>> lags;  ///< relative to the first; empty if tags are used as they are
   std::optional<RefinedMounting> mounting;
+  std::vector<Saturation> saturation;  ///< of each member
   int differentiator_half_width = 0;
   double alpha_error_sd = 0.0;  ///< rad/s^2
   DefectReport defects;
   record::Events events;
 };
 
-/// In this order: resamples, estimates and corrects lags, refines the mounting, repeats both, moves to the body's origin, finds
-/// and excludes defective sensors, subtracts offsets. A jump in a sensor's bias is subtracted.
+/// In this order: resamples, leaves out what is at the end of a sensor's range, estimates and corrects lags, refines the
+/// mounting, repeats both, moves to the body's origin, finds and excludes defective sensors, subtracts offsets. A jump in a
+/// sensor's bias is subtracted.
 /// @param progress  called with the current step and the fraction done
 /// @throws std::invalid_argument  fewer than two members, or recordings that overlap by less than 20 s
 [[nodiscard]] Assembly assemble(const std::vector<ArrayMember>& members, const AssemblyOptions& options,

@@ -95,8 +95,13 @@ struct DefectReport {
 /// The largest standardised leave-one-out residual identifies the sensor (Baarda 1968); it is removed and the rest is tested
 /// again while three are left. Noise per sensor and channel follows from the K residuals about the plain mean, var = sigma_k^2
 /// (1 - 2/K) + sum_j sigma_j^2/K^2, by running medians; longer windows from the residuals' Allan variances. Constant small
-/// differences of mounting, scale and lag are removed from each sensor by regression over the whole record; for remaining
-/// effects of dynamics the thresholds are widened by a fitted linear function of the motion's power.
+/// differences of mounting, scale and lag are removed from each sensor by regression over the whole record. Values at the end
+/// of a sensor's range (`SensorSignals::limited`) are not tested.
+///
+/// What all sensors show at once (impacts and vibration that each takes in its own way) is no defect of one. Squares are
+/// divided by a fitted linear function of how far the sensors lie apart at that time (the median over the sensors: one that is
+/// defective does not count), of the motion's power for the response to motion; the record's own maxima say how long the tails
+/// are (Gumbel 1958); and a sensor is excluded only if the others are in order without it, or without it and one more.
 ///
 /// Thresholds follow from Gaussian maxima over overlapping windows: u with (rate of evaluations) min(1, u^2/W) P(|x| > u) = the
 /// test's share. O(K samples).

@@ -21,6 +21,9 @@ struct SensorSignals {
   Eigen::Matrix<double, kChannels, Eigen::Dynamic> values;
   /// Per column: bit c is set if row c is usable (recorded, and not found defective).
   std::vector<std::uint8_t> usable;
+  /// Per column: bit c is set if row c follows from samples at the end of a sensor's range, its own or, by the way to the
+  /// body's origin, another's rates. Such values are not compared with those of other sensors. Empty: none.
+  std::vector<std::uint8_t> limited;
 
   [[nodiscard]] bool may_use(int channel, std::size_t n) const { return ((usable[n] >> channel) & 1U) != 0; }
 };

@@ -1,0 +1,42 @@
+#pragma once
+// Samples at the end of a sensor's range, found in its recording.
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "coast/array/resample.hpp"
+#include "coast/array/signals.hpp"
+#include "coast/record/imu.hpp"
+
+namespace coast::array {
+
+/// Rows in the sensor's own axes.
+struct Saturation {
+  std::vector<std::uint8_t> samples;           ///< per sample of the recording: bit c, row c is at an end of its range
+  std::array<double, kChannels> most{};        ///< the largest magnitude of the ends reached, rad/s, m/s^2; 0: none
+  std::array<std::size_t, kChannels> count{};  ///< samples at an end
+
+  [[nodiscard]] bool any() const;
+};
+
+/// Finds the ends of the range that a recording reaches. Where motion goes beyond the range, samples pile up on the largest
+/// value, whatever it is: an end is a largest (or smallest) rate that at least four samples in three separate places have, and
+/// three times as many as any of the five values next to it. Noise of a coarse sensor at rest repeats its extremes too, but
+/// less often than what lies further in; and a channel with fewer than 100 different values is not examined.
+///
+/// O(N log N).
+[[nodiscard]] Saturation find_saturation(const record::ImuRecording& recording);
+
+/// Marks the columns that a resampled sensor has from samples at the end of its range: with the resampling filter's length of
+/// 16 intervals to both sides, for all three axes of the kind (a rotation mixes them). They are `limited` and not usable.
+/// @param sensor  the recording resampled to the grid with this lag
+void mark_saturation(SensorSignals& sensor, const Saturation& saturation, const record::ImuRecording& recording,
+                     const Grid& grid, const LagOfTag& lag);
+
+/// Specific forces were moved to the origin by the mean rates: where a sensor's rates are at the end of its range, the forces
+/// of all are `limited`.
+void mark_forces_moved_by_limited_rates(Signals& signals);
+
+}  // namespace coast::array
