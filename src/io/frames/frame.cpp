@@ -1,0 +1,115 @@
+#include "frame.hpp"
+
+#include <fmt/format.h>
+
+#include "../binary.hpp"
+#include "checksums.hpp"
+
+namespace coast::io {
+
+namespace {
+
+using Verdict = FrameTrial::Verdict;
+
+constexpr std::size_t kLongestSentence = 256;  // NMEA has 82; $PUBX and other sentences of one maker are longer
+constexpr std::size_t kSentenceEnd = 5;        // '*', two digits, CR, LF
+
+FrameTrial need(std::size_t size) {
+  return {Verdict::kMore, size, 0, 0, 0};
+}
+
+std::uint8_t byte_at(std::string_view bytes, std::size_t at) {
+  return static_cast<std::uint8_t>(bytes[at]);
+}
+
+int hex_digit(char c) {
+  if (c >= '0' && c <= '9') return c - '0';
+  if (c >= 'A' && c <= 'F') return c - 'A' + 10;
+  return c >= 'a' && c <= 'f' ? c - 'a' + 10 : -1;
+}
+
+/// The three letters that tell a sentence: after the two of the talker; of one maker ("$PUBX", "$VNINS") those of the maker.
+std::uint32_t sentence_id(std::string_view content) {
+  const std::string_view address = content.substr(0, content.find(','));
+  if (address.size() < 3) return 0;
+  const std::string_view letters = address.size() == 5 && address[0] != 'P' && !address.starts_with("VN")
+                                       ? address.substr(2)
+                                       : address.substr(address[0] == 'P' ? 1 : 0, 3);
+  if (letters.size() < 3) return 0;
+  return static_cast<std::uint32_t>(byte_at(letters, 0)) << 16 | static_cast<std::uint32_t>(byte_at(letters, 1)) << 8 |
+         byte_at(letters, 2);
+}
+
+}  // namespace
+
+std::string_view name_of(Protocol protocol) {
+  static constexpr std::array<std::string_view, kProtocols> names = {"UBX", "NMEA", "RTCM", "VectorNav"};
+  return names.at(static_cast<std::size_t>(protocol));
+}
+
+std::string frame_name(Protocol protocol, std::uint32_t id) {
+  switch (protocol) {
+    case Protocol::kUbx:
+      return fmt::format("UBX 0x{:02X} 0x{:02X}", id >> 8, id & 0xffU);
+    case Protocol::kNmea:
+      if (id == 0) return "NMEA";
+      return fmt::format("NMEA {}{}{}", static_cast<char>(id >> 16), static_cast<char>(id >> 8 & 0xffU),
+                         static_cast<char>(id & 0xffU));
+    case Protocol::kRtcm3:
+      return fmt::format("RTCM {}", id);
+    case Protocol::kVectorNav:
+      break;
+  }
+  return "VectorNav";
+}
+
+/// Sync 0xB5 0x62, class, id, length of the payload, payload, checksum over class to payload (u-blox F9 interface description,
+/// "UBX frame structure").
+FrameTrial try_ubx(std::string_view bytes) {
+  constexpr std::size_t kHead = 6, kFrame = 8;
+  // The longest message, RXM-RAWX of 255 signals, has 8176 bytes. A bound keeps false beginnings in garbage cheap.
+  constexpr std::size_t kLongestPayload = kLongestFrame - kFrame;
+  if (bytes.size() >= 2 && bytes[1] != '\x62') return {};
+  if (bytes.size() < kHead) return need(kHead);
+  const std::size_t payload = number_at<std::uint16_t>(bytes, 4);
+  if (payload > kLongestPayload) return {};
+  if (bytes.size() < kFrame + payload) return need(kFrame + payload);
+  const std::uint16_t stated = number_at<std::uint16_t>(bytes, kHead + payload);
+  if (fletcher8(bytes.substr(2, kHead - 2 + payload)) != stated) return {Verdict::kChecksum, 0, 0, 0, 0};
+  const std::uint32_t id = static_cast<std::uint32_t>(byte_at(bytes, 2)) << 8 | byte_at(bytes, 3);
+  return {Verdict::kFrame, kFrame + payload, id, kHead, payload};
+}
+
+/// '$', printable characters, '*', two hexadecimal digits of their exclusive or, CR LF (NMEA 0183).
+FrameTrial try_nmea(std::string_view bytes) {
+  std::uint8_t sum = 0;
+  for (std::size_t i = 1; i < std::min(bytes.size(), kLongestSentence); ++i) {
+    const char c = bytes[i];
+    if (c == '*') {
+      if (bytes.size() < i + kSentenceEnd) return need(i + kSentenceEnd);
+      const int high = hex_digit(bytes[i + 1]), low = hex_digit(bytes[i + 2]);
+      if (high < 0 || low < 0 || bytes[i + 3] != '\r' || bytes[i + 4] != '\n') return {};
+      if (16 * high + low != sum) return {Verdict::kChecksum, 0, 0, 0, 0};
+      return {Verdict::kFrame, i + kSentenceEnd, sentence_id(bytes.substr(1, i - 1)), 1, i - 1};
+    }
+    if (c < ' ' || c > '~' || c == '$') return {};
+    sum = static_cast<std::uint8_t>(sum ^ static_cast<std::uint8_t>(c));
+  }
+  return bytes.size() < kLongestSentence ? need(kLongestSentence) : FrameTrial{};
+}
+
+/// 0xD3, six zero bits and ten of the length, message, CRC-24Q (RTCM 10403). The message begins with its number, 12 bits.
+FrameTrial try_rtcm3(std::string_view bytes) {
+  constexpr std::size_t kHead = 3, kFrame = 6;
+  if (bytes.size() >= 2 && (byte_at(bytes, 1) & 0xfcU) != 0) return {};
+  if (bytes.size() < kHead) return need(kHead);
+  const std::size_t message = number_at<std::uint16_t>(bytes, 1, true) & 0x3ffU;
+  if (message < 2) return {};
+  if (bytes.size() < kFrame + message) return need(kFrame + message);
+  // Over a message with its CRC the remainder is zero.
+  if (crc24q(bytes.substr(0, kFrame + message)) != 0) return {Verdict::kChecksum, 0, 0, 0, 0};
+  return {Verdict::kFrame, kFrame + message, static_cast<std::uint32_t>(number_at<std::uint16_t>(bytes, kHead, true) >> 4),
+          kHead, message};
+}
+
+}  // namespace coast::io
