@@ -34,7 +34,7 @@ Seen frames_of(const std::string& content) {
   const test::Files files;
   FrameStream stream(files.put("log.ubx", content), kUbxLog);
   Seen seen;
-  Frame frame;
+  MessageFrame frame;
   while (stream.next(frame)) seen.frames.push_back({frame.protocol, frame.id, std::string(frame.payload), frame.position});
   seen.census = stream.census();
   return seen;

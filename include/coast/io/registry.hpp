@@ -1,6 +1,7 @@
 #pragma once
 // The file formats, in an explicit table. To add one, write a file under src/io/formats and a line in registry.cpp.
 
+#include <filesystem>
 #include <functional>
 #include <optional>
 #include <string>
@@ -11,6 +12,8 @@
 #include "coast/io/gnss.hpp"
 #include "coast/io/imu.hpp"
 #include "coast/io/reference.hpp"
+#include "coast/record/navigation.hpp"
+#include "coast/record/observation.hpp"
 
 namespace coast::io {
 
@@ -29,6 +32,9 @@ struct Format {
   std::function<record::ImuRecording(const ImuFileOptions&, Near)> read_imu;
   std::function<record::GnssRecording(const GnssFileOptions&, Near)> read_gnss;
   std::function<record::Trajectory(const ReferenceFileOptions&, Near)> read_reference;
+  /// Formats beside RINEX only: what is no other format is read as RINEX.
+  std::function<record::ObservationRecording(const std::filesystem::path&)> read_observations = {};
+  std::function<record::NavigationRecording(const std::filesystem::path&)> read_navigation = {};
 };
 
 /// All formats, the most specific first: the first that recognises a file reads it.

@@ -18,7 +18,7 @@ inline constexpr std::size_t kProtocols = 4;
 
 /// One message. UBX: the id is class * 256 + id; NMEA: the three letters of the sentence, or PUB of $PUBX; RTCM 3: the message
 /// number; VectorNav: 0, as its messages differ by the fields that the payload names first.
-struct Frame {
+struct MessageFrame {
   Protocol protocol = Protocol::kUbx;
   std::uint32_t id = 0;
   std::string_view payload;    ///< without frame, length and checksum

@@ -48,7 +48,7 @@ FrameStream::FrameStream(const std::filesystem::path& file, std::span<const Fram
   for (const FrameKind& kind : kinds) kind_of_.at(index_of(kind.first)) = &kind;
 }
 
-bool FrameStream::next(Frame& frame) {
+bool FrameStream::next(MessageFrame& frame) {
   while (true) {
     std::string_view ahead = window_.ahead(1);
     if (ahead.empty()) break;

@@ -35,7 +35,7 @@ class FrameStream {
   FrameStream(const std::filesystem::path& file, std::span<const FrameKind> kinds);
 
   /// The next frame; its payload is valid until the next call.
-  [[nodiscard]] bool next(Frame& frame);
+  [[nodiscard]] bool next(MessageFrame& frame);
   [[nodiscard]] const FrameCensus& census() const { return census_; }
   [[nodiscard]] const std::string& name() const { return window_.name(); }
 
