@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "../binary.hpp"
+#include "../vectornav/vectornav_message.hpp"
 #include "checksums.hpp"
 
 namespace coast::io {
@@ -60,7 +61,7 @@ std::string frame_name(Protocol protocol, std::uint32_t id) {
     case Protocol::kVectorNav:
       break;
   }
-  return "VectorNav";
+  return fmt::format("VectorNav 0x{:02X}", id);
 }
 
 /// Sync 0xB5 0x62, class, id, length of the payload, payload, checksum over class to payload (u-blox F9 interface description,
@@ -110,6 +111,18 @@ FrameTrial try_rtcm3(std::string_view bytes) {
   if (crc24q(bytes.substr(0, kFrame + message)) != 0) return {Verdict::kChecksum, 0, 0, 0, 0};
   return {Verdict::kFrame, kFrame + message, static_cast<std::uint32_t>(number_at<std::uint16_t>(bytes, kHead, true) >> 4),
           kHead, message};
+}
+
+/// Sync 0xFA, groups, fields of each, their contents, CRC-16 over all but the sync byte (VectorNav ICD).
+FrameTrial try_vectornav(std::string_view bytes) {
+  constexpr std::size_t kSync = 1, kCrc = 2;
+  VectorNavMessage message;
+  const VectorNavMessage::Head head = message.parse(bytes.substr(kSync));
+  if (head == VectorNavMessage::Head::kUnknown) return {};
+  const std::size_t size = kSync + message.size() + kCrc;
+  if (bytes.size() < size) return need(size);
+  if (crc16_ccitt(bytes.substr(kSync, message.size() + kCrc)) != 0) return {Verdict::kChecksum, 0, 0, 0, 0};
+  return {Verdict::kFrame, size, message.groups(), kSync, message.size()};
 }
 
 }  // namespace coast::io

@@ -13,11 +13,11 @@ enum class Protocol : std::uint8_t { kUbx, kNmea, kRtcm3, kVectorNav };
 inline constexpr std::size_t kProtocols = 4;
 
 [[nodiscard]] std::string_view name_of(Protocol protocol);
-/// "UBX 0x02 0x15", "NMEA GGA", "RTCM 1077", "VectorNav"
+/// "UBX 0x02 0x15", "NMEA GGA", "RTCM 1077", "VectorNav 0x0E"
 [[nodiscard]] std::string frame_name(Protocol protocol, std::uint32_t id);
 
 /// One message. UBX: the id is class * 256 + id; NMEA: the three letters of the sentence, or PUB of $PUBX; RTCM 3: the message
-/// number; VectorNav: 0, as its messages differ by the fields that the payload names first.
+/// number; VectorNav: the byte of the groups, with which the payload begins.
 struct MessageFrame {
   Protocol protocol = Protocol::kUbx;
   std::uint32_t id = 0;
