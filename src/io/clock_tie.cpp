@@ -10,7 +10,7 @@ bool ClockTie::fit() {
   constexpr std::size_t kFewest = 10;
   constexpr double kShortest = 10.0;  // s
   constexpr double kMostMedians = 3.0, kLeastWidth = 1e-3;
-  if (pairs_.size() < kFewest || pairs_.back().t - pairs_.front().t < kShortest) return false;
+  if (pairs_.size() < kFewest || (!nominal_ && pairs_.back().t - pairs_.front().t < kShortest)) return false;
   if (!fit_within(std::numeric_limits<double>::infinity())) return false;
   std::vector<double> distances;
   distances.reserve(pairs_.size());
@@ -44,10 +44,13 @@ bool ClockTie::fit_within(double most) {
     sxx += x * x;
     sxy += x * y;
   }
+  // Delays of tens of milliseconds over a minute: a slope to some 1e-4, which is worse than any quartz.
+  constexpr double kSlopeFrom = 60.0;  // s
+  const bool sloped = !nominal_ || pairs_.back().t - start > kSlopeFrom;
   const double determinant = n * sxx - sx * sx;
-  const double tick = determinant > 0.0 ? (n * sxy - sx * sy) / determinant : 0.0;
+  const double tick = !sloped ? *nominal_ : determinant > 0.0 ? (n * sxy - sx * sy) / determinant : 0.0;
   constexpr double kLongestTick = 1.0;  // s
-  if (!(tick > 0.0 && tick < kLongestTick)) return false;
+  if (!(n > 0.0 && tick > 0.0 && tick < kLongestTick)) return false;
   zero_ = zero;
   tick_ = tick;
   at_zero_ = start + (sy - tick * sx) / n;

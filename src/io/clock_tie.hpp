@@ -12,11 +12,14 @@ namespace coast::io {
 /// Straight line from counter readings to GPS time through pairs that are late by varying delays.
 class ClockTie {
  public:
+  /// @param nominal_tick  s of one count, if it is known: kept where the pairs are less than a minute apart
+  explicit ClockTie(std::optional<double> nominal_tick = std::nullopt) : nominal_(nominal_tick) {}
+
   /// Counter and GPS time that belong together; counters do not decrease.
   void add(std::int64_t counter, geo::GpsTime t) { pairs_.push_back({counter, t}); }
 
-  /// Least squares, without pairs further from a first line than three times the median distance. @return false: fewer than ten
-  /// pairs, or less than ten seconds between them
+  /// Least squares, without pairs further from a first line than three times the median distance.  @return false: fewer than
+  /// ten pairs, or, without a nominal tick, less than ten seconds between them
   [[nodiscard]] bool fit();
   [[nodiscard]] geo::GpsTime at(std::int64_t counter) const;
   [[nodiscard]] double tick_s() const { return tick_; }
@@ -30,6 +33,7 @@ class ClockTie {
   [[nodiscard]] double distance(const Pair& pair) const;
   [[nodiscard]] bool fit_within(double most);
 
+  std::optional<double> nominal_;
   std::vector<Pair> pairs_;
   std::int64_t zero_ = 0;
   geo::GpsTime at_zero_;
