@@ -9,11 +9,10 @@
 #include <vector>
 
 #include "coast/geo/time.hpp"
+#include "coast/io/contents.hpp"
 #include "coast/io/gnss.hpp"
 #include "coast/io/imu.hpp"
 #include "coast/io/reference.hpp"
-#include "coast/record/navigation.hpp"
-#include "coast/record/observation.hpp"
 
 namespace coast::io {
 
@@ -35,6 +34,9 @@ struct Format {
   /// Formats beside RINEX only: what is no other format is read as RINEX.
   std::function<record::ObservationRecording(const std::filesystem::path&)> read_observations = {};
   std::function<record::NavigationRecording(const std::filesystem::path&)> read_navigation = {};
+  std::function<record::TimeMarkRecording(const std::filesystem::path&)> read_time_marks = {};
+  /// Of a file that consists of messages: how many of which kind, the most frequent first.
+  std::function<std::vector<MessageCount>(const std::filesystem::path&)> count_messages = {};
 };
 
 /// All formats, the most specific first: the first that recognises a file reads it.

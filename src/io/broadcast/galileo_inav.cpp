@@ -17,7 +17,7 @@ using InavWord = std::array<std::uint8_t, 16>;
 constexpr std::size_t kOddPart = 128;  // bit at which it begins in the page
 
 /// Copies bits to the end of a string of bits.
-template <std::size_t kBytes>
+template <std::size_t Bytes>
 class BitWriter {
  public:
   explicit BitWriter(std::size_t at = 0) : at_(at) {}
@@ -25,10 +25,10 @@ class BitWriter {
     for (std::size_t i = at; i < at + count; ++i, ++at_)
       bytes_.at(at_ / 8) = static_cast<std::uint8_t>(bytes_.at(at_ / 8) | from.bits(i, 1) << (7 - at_ % 8));
   }
-  [[nodiscard]] const std::array<std::uint8_t, kBytes>& bytes() const { return bytes_; }
+  [[nodiscard]] const std::array<std::uint8_t, Bytes>& bytes() const { return bytes_; }
 
  private:
-  std::array<std::uint8_t, kBytes> bytes_{};
+  std::array<std::uint8_t, Bytes> bytes_{};
   std::size_t at_;
 };
 

@@ -2,6 +2,7 @@
 
 #include "../ubx/ubx_messages.hpp"
 #include "../ubx/ubx_readers.hpp"
+#include "coast/io/time_marks.hpp"
 #include "formats.hpp"
 
 namespace coast::io {
@@ -19,6 +20,8 @@ Format ubx_format() {
   Format format{"ubx", "UBX of u-blox receivers", sniff_ubx, read_ubx_imu, read_ubx_gnss, {}};
   format.read_observations = read_ubx_observations;
   format.read_navigation = read_ubx_navigation;
+  format.read_time_marks = read_time_marks;
+  format.count_messages = [](const std::filesystem::path& file) { return count_frames(file, kUbxLog); };
   return format;
 }
 

@@ -15,7 +15,9 @@ bool sniff_ulog(const FileHead& head) {
 }  // namespace
 
 Format ulog_format() {
-  return {"ulog", "ULog, flight log of PX4", sniff_ulog, read_ulog_imu, read_ulog_gnss, {}};
+  Format format{"ulog", "ULog, flight log of PX4", sniff_ulog, read_ulog_imu, read_ulog_gnss, {}};
+  format.count_messages = count_ulog_topics;
+  return format;
 }
 
 }  // namespace coast::io

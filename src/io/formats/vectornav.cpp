@@ -1,5 +1,6 @@
 // Binary output of VectorNav sensors, as recorded from their serial port: IMU and positions of GNSS.
 
+#include "../frames/frame_stream.hpp"
 #include "../vectornav/vectornav_readers.hpp"
 #include "formats.hpp"
 
@@ -14,7 +15,10 @@ bool sniff_vectornav(const FileHead& head) {
 }  // namespace
 
 Format vectornav_format() {
-  return {"vectornav", "binary output of VectorNav sensors", sniff_vectornav, read_vectornav_imu, read_vectornav_gnss, {}};
+  Format format{"vectornav", "binary output of VectorNav sensors", sniff_vectornav, read_vectornav_imu, read_vectornav_gnss,
+                {}};
+  format.count_messages = [](const std::filesystem::path& file) { return count_frames(file, kVectorNavLog); };
+  return format;
 }
 
 }  // namespace coast::io

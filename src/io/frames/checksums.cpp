@@ -6,24 +6,24 @@ namespace coast::io {
 
 namespace {
 
-/// Remainders of all bytes for a polynomial of `kBits` bits, whose highest term is left out.
-template <int kBits>
+/// Remainders of all bytes for a polynomial of `Bits` bits, whose highest term is left out.
+template <int Bits>
 constexpr std::array<std::uint32_t, 256> crc_table(std::uint32_t polynomial) {
-  constexpr std::uint32_t kMask = (std::uint32_t{1} << kBits) - 1;
+  constexpr std::uint32_t kMask = (std::uint32_t{1} << Bits) - 1;
   std::array<std::uint32_t, 256> table{};
   for (std::uint32_t byte = 0; byte < table.size(); ++byte) {
-    std::uint32_t crc = byte << (kBits - 8);
-    for (int bit = 0; bit < 8; ++bit) crc = ((crc << 1) ^ ((crc >> (kBits - 1) & 1U) != 0 ? polynomial : 0U)) & kMask;
+    std::uint32_t crc = byte << (Bits - 8);
+    for (int bit = 0; bit < 8; ++bit) crc = ((crc << 1) ^ ((crc >> (Bits - 1) & 1U) != 0 ? polynomial : 0U)) & kMask;
     table[byte] = crc;
   }
   return table;
 }
 
-template <int kBits>
+template <int Bits>
 std::uint32_t crc_of(std::string_view bytes, const std::array<std::uint32_t, 256>& table) {
-  constexpr std::uint32_t kMask = (std::uint32_t{1} << kBits) - 1;
+  constexpr std::uint32_t kMask = (std::uint32_t{1} << Bits) - 1;
   std::uint32_t crc = 0;
-  for (const char c : bytes) crc = ((crc << 8) & kMask) ^ table[(crc >> (kBits - 8) ^ static_cast<unsigned char>(c)) & 0xffU];
+  for (const char c : bytes) crc = ((crc << 8) & kMask) ^ table[(crc >> (Bits - 8) ^ static_cast<unsigned char>(c)) & 0xffU];
   return crc;
 }
 

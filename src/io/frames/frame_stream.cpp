@@ -2,6 +2,9 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <functional>
+
 namespace coast::io {
 
 namespace {
@@ -42,6 +45,17 @@ record::Events FrameCensus::events(const std::string& file) const {
          static_cast<long>(skipped - cut_off));
   if (cut_off > 0) warn("message_cut_off", fmt::format("the last message is cut off: {} bytes left out", cut_off), 1);
   return events;
+}
+
+std::vector<MessageCount> count_frames(const std::filesystem::path& file, std::span<const FrameKind> kinds) {
+  FrameStream stream(file, kinds);
+  MessageFrame frame;
+  while (stream.next(frame)) {
+  }
+  std::vector<MessageCount> counts;
+  for (const auto& [key, number] : stream.census().frames) counts.push_back({frame_name(key.first, key.second), number});
+  std::ranges::stable_sort(counts, std::greater<>{}, &MessageCount::number);
+  return counts;
 }
 
 FrameStream::FrameStream(const std::filesystem::path& file, std::span<const FrameKind> kinds) : window_(file) {

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "byte_window.hpp"
+#include "coast/io/contents.hpp"
 #include "coast/record/event.hpp"
 #include "frame.hpp"
 
@@ -27,6 +28,9 @@ struct FrameCensus {
   /// What damage there is, as events: wrong checksums of protocols that the file has, skipped bytes, a cut end.
   [[nodiscard]] record::Events events(const std::string& file) const;
 };
+
+/// Number of frames by kind in a whole file, the most frequent first.
+[[nodiscard]] std::vector<MessageCount> count_frames(const std::filesystem::path& file, std::span<const FrameKind> kinds);
 
 /// Yields frames of several protocols. Bytes that begin no whole frame are skipped one by one: after garbage the next frame is
 /// found, whatever a false beginning states as its length.

@@ -40,9 +40,9 @@ std::optional<Subframe> subframe_of(std::string_view payload) {
 }
 
 /// The words' bits in the order of transmission.
-template <std::size_t kWords>
-std::array<std::uint8_t, 4 * kWords> bytes_of(const std::vector<std::uint32_t>& words) {
-  std::array<std::uint8_t, 4 * kWords> bytes{};
+template <std::size_t Words>
+std::array<std::uint8_t, 4 * Words> bytes_of(const std::vector<std::uint32_t>& words) {
+  std::array<std::uint8_t, 4 * Words> bytes{};
   for (std::size_t i = 0; i < bytes.size(); ++i) bytes.at(i) = static_cast<std::uint8_t>(words.at(i / 4) >> (24 - 8 * (i % 4)));
   return bytes;
 }

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <functional>
 
 #include "../binary.hpp"
 #include "coast/record/error.hpp"
@@ -164,6 +165,17 @@ record::Events UlogStream::events() const {
        fmt::format("{} bytes that are no message skipped, the first at byte {}", garbage_, first_garbage_));
   warn(cut_off_ > 0 ? 1 : 0, "message_cut_off", fmt::format("the last message is cut off: {} bytes left out", cut_off_));
   return events;
+}
+
+std::vector<MessageCount> count_ulog_topics(const std::filesystem::path& file) {
+  UlogStream stream(file);
+  std::map<std::string, long> numbers;
+  UlogData data;
+  while (stream.next(data)) ++numbers[fmt::format("{} {}", data.topic->name, data.topic->instance)];
+  std::vector<MessageCount> counts;
+  for (const auto& [name, number] : numbers) counts.push_back({name, number});
+  std::ranges::stable_sort(counts, std::greater<>{}, &MessageCount::number);
+  return counts;
 }
 
 }  // namespace coast::io

@@ -5,6 +5,7 @@
 #include <map>
 
 #include "../frames/byte_window.hpp"
+#include "coast/io/contents.hpp"
 #include "coast/record/event.hpp"
 #include "ulog_layout.hpp"
 
@@ -55,6 +56,9 @@ class UlogStream {
   long dropouts_ = 0, dropout_ms_ = 0, undefined_ = 0;
   std::uint64_t garbage_ = 0, first_garbage_ = 0, cut_off_ = 0;
 };
+
+/// Number of logged messages by topic and instance, the most frequent first.
+[[nodiscard]] std::vector<MessageCount> count_ulog_topics(const std::filesystem::path& file);
 
 /// The first bytes of a file are those of ULog.
 [[nodiscard]] bool begins_as_ulog(std::string_view head);
