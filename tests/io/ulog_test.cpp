@@ -213,13 +213,14 @@ TEST(UlogFile, GoesOnAfterDamageAtTheNextSync) {
   const Files files;
   files.put("flight.ulg", start + std::string(50, '\xff') + ulog_message('O', Bytes().u2(250).str()) + kUlogSyncMessage +
                               combined(3, 13'500'000, 1.0F) + combined(9, 13'600'000, 9.0F) + combined(77, 13'600'000, 9.0F) +
-                              ulog_message('O', Bytes().u2(120).str()) + combined(3, 13'700'000, 1.0F).substr(0, 30));
+                              logged(3, Bytes().zeros(60)) + ulog_message('O', Bytes().u2(120).str()) +
+                              combined(3, 13'700'000, 1.0F).substr(0, 30));
   const auto recording = files.imu("flight.ulg");
   EXPECT_EQ(recording.samples.size(), 601U);
   // The message in the garbage is lost with it; the byte 0xff is no type, so that all up to the sync message is skipped.
   EXPECT_EQ(test::count_of(recording.events, "message_garbage"), 55);
   EXPECT_EQ(test::count_of(recording.events, "log_dropout"), 1);
-  EXPECT_EQ(test::count_of(recording.events, "log_undefined"), 1);
+  EXPECT_EQ(test::count_of(recording.events, "log_undefined"), 2);  // an unknown topic, and one of another size
   EXPECT_EQ(test::count_of(recording.events, "message_cut_off"), 1);
 }
 

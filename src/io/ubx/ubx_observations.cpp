@@ -128,7 +128,7 @@ void RawxReader::take_epoch(std::string_view payload) {
 }
 
 void RawxReader::take_block(const RawxBlock& block, geo::GpsTime t) {
-  constexpr int kChannelOffset = 7;
+  constexpr int kChannelOffset = 7, kChannels = 14;
   constexpr double kFarthest = 1e9, kMostCycles = 1e11, kMostHertz = 1e6;
   const auto satellite = ubx_satellite(block.gnss, block.sv);
   const auto signal = satellite ? ubx_signal(satellite->system, block.signal) : std::nullopt;
@@ -148,7 +148,7 @@ void RawxReader::take_block(const RawxBlock& block, geo::GpsTime t) {
   if (block.cn0 > 0) o.cn0_dbhz = block.cn0;
   o.half_cycle = o.phase_cycles && !block.half_cycle_known();
   o.lost_lock = lost_lock(block, o, t);
-  if (satellite->system == record::SatelliteSystem::kGlonass)
+  if (satellite->system == record::SatelliteSystem::kGlonass && block.frequency < kChannels)
     recording_.glonass_channels[satellite->number] = block.frequency - kChannelOffset;
   if (o.code_m || o.phase_cycles) row_.push_back(o);
 }

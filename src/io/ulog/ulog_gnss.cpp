@@ -21,13 +21,12 @@ class UlogRow {
   explicit UlogRow(const UlogData& data) : data_(data) {}
   [[nodiscard]] std::optional<double> number(std::string_view name) const {
     const auto field = data_.topic->layout.find(name);
-    if (field == data_.topic->layout.end()) return std::nullopt;
-    const auto value = ulog_number(data_.bytes, field->second);
+    const auto value = field ? ulog_number(data_.bytes, *field) : std::nullopt;
     return value && std::isfinite(*value) ? value : std::nullopt;
   }
   [[nodiscard]] std::optional<std::int64_t> integer(std::string_view name) const {
     const auto field = data_.topic->layout.find(name);
-    return field == data_.topic->layout.end() ? std::nullopt : ulog_integer(data_.bytes, field->second);
+    return field ? ulog_integer(data_.bytes, *field) : std::nullopt;
   }
   /// In degrees or m: by its new name, or by its old one in an integer unit.
   [[nodiscard]] std::optional<double> renamed(std::string_view name, std::string_view before, double unit) const {

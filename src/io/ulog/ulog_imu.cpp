@@ -31,14 +31,14 @@ class UlogTriadReader {
  public:
   /// @param x  name of the three numbers, or of the first of three fields x, y, z
   UlogTriadReader(const UlogLayout& layout, std::string_view time, std::string_view x) {
-    time_ = find(layout, time);
-    if (!time_) time_ = find(layout, "timestamp");
-    const auto first = find(layout, x);
+    time_ = layout.find(time);
+    if (!time_) time_ = layout.find("timestamp");
+    const auto first = layout.find(x);
     if (first && first->count == 3)
       for (std::size_t i = 0; i < 3; ++i) axes_.at(i) = std::pair(*first, i);
     else if (first)
       for (std::size_t i = 0; i < 3; ++i) {
-        const auto field = find(layout, std::string_view("xyz").substr(i, 1));
+        const auto field = layout.find(std::string_view("xyz").substr(i, 1));
         if (field) axes_.at(i) = std::pair(*field, std::size_t{0});
       }
   }
@@ -56,10 +56,6 @@ class UlogTriadReader {
   }
 
  private:
-  static std::optional<UlogField> find(const UlogLayout& layout, std::string_view name) {
-    const auto field = layout.find(name);
-    return field == layout.end() ? std::nullopt : std::optional(field->second);
-  }
   std::optional<UlogField> time_;
   std::array<std::optional<std::pair<UlogField, std::size_t>>, 3> axes_;
 };

@@ -132,10 +132,11 @@ std::optional<UlogLayout> UlogFormats::layout(std::string_view name) const {
   const auto found = formats_.find(name);
   if (found == formats_.end() || !size_of(name, 0)) return std::nullopt;
   UlogLayout layout;
-  std::size_t offset = 0;
   for (const Member& member : found->second) {
-    if (const UlogTypeName* basic = basic_type(member.type)) layout[member.name] = {basic->type, offset, member.count};
-    offset += *size_of(member.type, 1) * member.count;
+    if (const UlogTypeName* basic = basic_type(member.type))
+      layout.fields[member.name] = {basic->type, layout.size, member.count};
+    layout.size += *size_of(member.type, 1) * member.count;
+    if (!member.name.starts_with("_padding")) layout.without_padding = layout.size;
   }
   return layout;
 }

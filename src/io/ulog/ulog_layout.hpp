@@ -25,15 +25,23 @@ struct UlogField {
 /// The same of an integer with all its digits.
 [[nodiscard]] std::optional<std::int64_t> ulog_integer(std::string_view message, const UlogField& field);
 
-/// Fields of one kind of message, by name.
-using UlogLayout = std::map<std::string, UlogField, std::less<>>;
+/// One kind of message: its fields that are numbers, by name, and its size; the logger leaves out padding at the end.
+struct UlogLayout {
+  std::map<std::string, UlogField, std::less<>> fields;
+  std::size_t size = 0, without_padding = 0;
+
+  [[nodiscard]] std::optional<UlogField> find(std::string_view name) const {
+    const auto found = fields.find(name);
+    return found == fields.end() ? std::nullopt : std::optional(found->second);
+  }
+};
 
 /// Definitions of a file, as they are collected.
 class UlogFormats {
  public:
   /// "name:type field;type[3] field;".  @return false: not of this form
   [[nodiscard]] bool add(std::string_view definition);
-  /// Fields that are numbers; those of formats inside are left out, but their size is counted. None if the format, or one
+  /// Fields of formats inside are left out, but their size is counted. None if the format, or one
   /// inside it, is not defined, or is inside itself.
   [[nodiscard]] std::optional<UlogLayout> layout(std::string_view name) const;
 

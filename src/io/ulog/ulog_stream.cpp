@@ -55,7 +55,9 @@ bool UlogStream::next(UlogData& data) {
       continue;
     }
     data = {topic->first, &topic->second, message.substr(kId)};
-    return true;
+    const UlogLayout& layout = topic->second.layout;
+    if (data.bytes.size() >= layout.without_padding && data.bytes.size() <= layout.size) return true;
+    ++undefined_;  // after damage, what was taken for its head was none
   }
   return false;
 }
@@ -160,7 +162,8 @@ record::Events UlogStream::events() const {
   };
   warn(dropouts_, "log_dropout",
        fmt::format("the logger lost data {} time{}, {} ms in all", dropouts_, dropouts_ == 1 ? "" : "s", dropout_ms_));
-  warn(undefined_, "log_undefined", fmt::format("{} messages without a definition left out", undefined_));
+  warn(undefined_, "log_undefined",
+       fmt::format("{} messages without a definition, or that contradict it, left out", undefined_));
   warn(static_cast<long>(garbage_), "message_garbage",
        fmt::format("{} bytes that are no message skipped, the first at byte {}", garbage_, first_garbage_));
   warn(cut_off_ > 0 ? 1 : 0, "message_cut_off", fmt::format("the last message is cut off: {} bytes left out", cut_off_));

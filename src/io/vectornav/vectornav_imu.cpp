@@ -3,7 +3,7 @@
 
 #include <fmt/format.h>
 
-#include <array>
+#include <cmath>
 
 #include "../imu_builder.hpp"
 #include "../repairs.hpp"
@@ -97,7 +97,8 @@ class VectorNavImuReader {
     const bool same = !samples.empty() && samples.back().dtheta == sample.dtheta && samples.back().dv == sample.dv;
     if (!order_.accept(sample.t, same)) return;
     samples.push_back(sample);
-    if (const auto temperature = temperature_of(message)) recording_.temperature.push_back(*temperature);
+    const auto temperature = temperature_of(message);
+    if (temperature && std::isfinite(*temperature)) recording_.temperature.push_back(*temperature);
   }
 
   void finish() {
