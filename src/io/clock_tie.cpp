@@ -21,12 +21,20 @@ bool ClockTie::fit() {
   return fit_within(std::max(kMostMedians * distance_, kLeastWidth));
 }
 
-double ClockTie::distance(const Pair& pair) const {
-  return pair.t - at(pair.counter);
+/// Seconds after the first pair.
+double ClockTie::seconds_at(std::int64_t counter) const {
+  return offset_ + tick_ * static_cast<double>(counter - pairs_.front().counter);
 }
 
-geo::GpsTime ClockTie::at(std::int64_t counter) const {
-  return at_zero_ + tick_ * static_cast<double>(counter - zero_);
+double ClockTie::distance(const Pair& pair) const {
+  return (pair.t - pairs_.front().t) - seconds_at(pair.counter);
+}
+
+std::optional<geo::GpsTime> ClockTie::at(std::int64_t counter) const {
+  constexpr double kFarthest = 1e7;  // s
+  const double seconds = seconds_at(counter);
+  if (!(std::abs(seconds) < kFarthest)) return std::nullopt;
+  return pairs_.front().t + seconds;
 }
 
 bool ClockTie::fit_within(double most) {
@@ -51,9 +59,8 @@ bool ClockTie::fit_within(double most) {
   const double tick = !sloped ? *nominal_ : determinant > 0.0 ? (n * sxy - sx * sy) / determinant : 0.0;
   constexpr double kLongestTick = 1.0;  // s
   if (!(n > 0.0 && tick > 0.0 && tick < kLongestTick)) return false;
-  zero_ = zero;
   tick_ = tick;
-  at_zero_ = start + (sy - tick * sx) / n;
+  offset_ = (sy - tick * sx) / n;
   return true;
 }
 

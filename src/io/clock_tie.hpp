@@ -21,7 +21,8 @@ class ClockTie {
   /// Least squares, without pairs further from a first line than three times the median distance.  @return false: fewer than
   /// ten pairs, or, without a nominal tick, less than ten seconds between them
   [[nodiscard]] bool fit();
-  [[nodiscard]] geo::GpsTime at(std::int64_t counter) const;
+  /// None for a counter that is months from those of the pairs.
+  [[nodiscard]] std::optional<geo::GpsTime> at(std::int64_t counter) const;
   [[nodiscard]] double tick_s() const { return tick_; }
   [[nodiscard]] double median_distance_s() const { return distance_; }
 
@@ -30,14 +31,14 @@ class ClockTie {
     std::int64_t counter;
     geo::GpsTime t;
   };
+  [[nodiscard]] double seconds_at(std::int64_t counter) const;
   [[nodiscard]] double distance(const Pair& pair) const;
   [[nodiscard]] bool fit_within(double most);
 
   std::optional<double> nominal_;
   std::vector<Pair> pairs_;
-  std::int64_t zero_ = 0;
-  geo::GpsTime at_zero_;
-  double tick_ = 0.0;  ///< s
+  double tick_ = 0.0;    ///< s
+  double offset_ = 0.0;  ///< s, of the first pair's counter from its time
   double distance_ = 0.0;
 };
 

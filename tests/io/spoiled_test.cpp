@@ -298,7 +298,6 @@ std::vector<Spoiled> receiver_files() {
   return {
       {"UBX without an IMU", Kind::kImu, version, "", "%: a UBX file without UBX-ESF-RAW and UBX-ESF-MEAS"},
       {"UBX without positions", Kind::kGnss, version, "", "%: a UBX file without UBX-NAV-PVT"},
-      {"UBX as reference", Kind::kReference, version, "", "%: this is a UBX file"},
       {"UBX with a wrong checksum alone", Kind::kGnss, wrong, "format: ubx", "%: a UBX file without UBX-NAV-PVT"},
       {"text as UBX", Kind::kGnss, pos(), "format: ubx", "%: a UBX file without UBX-NAV-PVT"},
       {"VectorNav without a checksum", Kind::kImu, whole, "format: vectornav", "%: 0 IMU samples in VectorNav messages"},

@@ -141,11 +141,18 @@ record::ImuRecording recording_of(const EsfSource& source, const FrameStream& st
   };
   Repairs repairs;
   TimeOrder order(error, repairs);
+  constexpr double kMostWithoutTime = 0.01;  // share of the samples
   bool temperature = true;
   for (const EsfSamples::Sample& s : source.samples.samples()) {
     ++row;
     auto& samples = recording.samples;
-    const record::ImuSample sample{source.tie.at(s.tag) + options.time.offset_s, 0.0, s.gyro, s.accel};
+    const auto t = source.tie.at(s.tag);
+    if (!t) {
+      repairs.add("imu_no_time", "with a counter far from those of the positions left out", kMostWithoutTime,
+                  error("a counter far from the others", "increasing", ""), std::nullopt);
+      continue;
+    }
+    const record::ImuSample sample{*t + options.time.offset_s, 0.0, s.gyro, s.accel};
     const bool same = !samples.empty() && samples.back().dtheta == sample.dtheta && samples.back().dv == sample.dv;
     if (!order.accept(sample.t, same)) continue;
     samples.push_back(sample);

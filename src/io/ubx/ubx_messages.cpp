@@ -19,9 +19,8 @@ constexpr int kLargestUbxWeek = 9999;               // beyond, not a week but da
 constexpr std::uint32_t kLargestTow = 604'800'000;  // ms
 
 bool is_read(std::uint32_t id) {
-  using namespace ubx;
-  constexpr std::array kRead = {kNavPvt,  kNavHpPosLlh, kNavTimeGps, kNavCov,  kRxmSfrbx,
-                                kRxmRawx, kMonVer,      kTimTm2,     kEsfMeas, kEsfRaw};
+  constexpr std::array kRead = {ubx::kNavPvt,  ubx::kNavHpPosLlh, ubx::kNavTimeGps, ubx::kNavCov,  ubx::kRxmSfrbx,
+                                ubx::kRxmRawx, ubx::kMonVer,      ubx::kTimTm2,     ubx::kEsfMeas, ubx::kEsfRaw};
   return std::ranges::find(kRead, id) != kRead.end();
 }
 

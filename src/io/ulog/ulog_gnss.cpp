@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <cstdlib>
 
 #include "../repairs.hpp"
 #include "coast/geo/units.hpp"
@@ -52,9 +53,11 @@ std::optional<UlogPosition> position_of(const UlogRow& row) {
   const auto boot = row.integer("timestamp");
   const auto latitude = row.renamed("latitude_deg", "lat", 1e-7), longitude = row.renamed("longitude_deg", "lon", 1e-7);
   const auto height = row.renamed("altitude_ellipsoid_m", "alt_ellipsoid", 1e-3);
-  if (!boot || !latitude || !longitude || !height) return std::nullopt;
+  if (!boot || *boot < 0 || *boot > kLongestUlogUptime || !latitude || !longitude || !height) return std::nullopt;
   UlogPosition p;
-  p.boot_us = *boot + row.integer("timestamp_time_relative").value_or(0);
+  constexpr std::int64_t kLargestDelay = 10'000'000;  // us; beyond, the field is not set
+  const std::int64_t relative = row.integer("timestamp_time_relative").value_or(0);
+  p.boot_us = *boot + (std::abs(relative) < kLargestDelay ? relative : 0);
   p.t = from_utc_microseconds(row.integer("time_utc_usec").value_or(0));
   p.fix_type = static_cast<int>(row.integer("fix_type").value_or(0));
   p.place = {*latitude * geo::kDegree, *longitude * geo::kDegree, *height};

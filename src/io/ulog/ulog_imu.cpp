@@ -45,7 +45,7 @@ class UlogTriadReader {
   [[nodiscard]] std::optional<UlogTriad> operator()(std::string_view bytes) const {
     UlogTriad triad;
     const auto time = time_ ? ulog_integer(bytes, *time_) : std::nullopt;
-    if (!time) return std::nullopt;
+    if (!time || *time < 0 || *time > kLongestUlogUptime) return std::nullopt;
     triad.boot_us = *time;
     for (std::size_t i = 0; i < 3; ++i) {
       const auto value = axes_.at(i) ? ulog_number(bytes, axes_.at(i)->first, axes_.at(i)->second) : std::nullopt;
@@ -149,11 +149,12 @@ record::ImuRecording read_ulog_imu(const ImuFileOptions& options, Format::Near) 
   TimeOrder order(error, repairs);
   for (const UlogImuSample& s : rows) {
     ++row;
-    const record::ImuSample sample{tie.at(s.boot_us) + options.time.offset_s, 0.0, s.gyro, s.accel};
-    if (!sample.dtheta.allFinite() || !sample.dv.allFinite()) {
+    const auto t = tie.at(s.boot_us);
+    if (!t || !s.gyro.allFinite() || !s.accel.allFinite()) {
       ++not_finite;
       continue;
     }
+    const record::ImuSample sample{*t + options.time.offset_s, 0.0, s.gyro, s.accel};
     require_possible(sample, error);
     auto& samples = recording.samples;
     const bool same = !samples.empty() && samples.back().dtheta == sample.dtheta && samples.back().dv == sample.dv;
@@ -164,8 +165,9 @@ record::ImuRecording read_ulog_imu(const ImuFileOptions& options, Format::Near) 
   if (not_finite > 0)
     recording.events.push_back(
         {record::Event::Severity::kWarning, "nan_row",
-         fmt::format("{}: {} IMU samples with a value that is not finite left out", stream.name(), not_finite), std::nullopt,
-         not_finite});
+         fmt::format("{}: {} IMU samples with a value that is not finite, or an impossible time, left out", stream.name(),
+                     not_finite),
+         std::nullopt, not_finite});
   recording.events.push_back(
       {record::Event::Severity::kInfo, "imu_clock_tied",
        fmt::format(
