@@ -48,28 +48,32 @@ class ContentsReader {
 
   void read_formats() {
     const FileHead head = head_of(file_);
-    for (const Format& format : formats())
-      if (format.sniff && format.sniff(head)) read_format(format);
+    for (const Format& format : formats()) {
+      if (!format.sniff || !format.sniff(head)) continue;
+      read_format(format);
+      if (!found()) continue;
+      // A table or a trajectory is of one kind: that readers of others refuse it says nothing.
+      if (!format.count_messages) contents_.refusals.clear();
+      return;
+    }
   }
 
-  /// Of a kind that another format has already recognised nothing more is read: the table's order decides.
   void read_format(const Format& format) {
-    const bool first = contents_.format.empty();
-    if (first) contents_.format = format.description;
-    if (first && format.count_messages) contents_.messages = format.count_messages(file_);
-    if (format.read_imu && !contents_.imu) {
+    contents_.format = format.description;
+    if (format.count_messages) contents_.messages = format.count_messages(file_);
+    if (format.read_imu) {
       ImuFileOptions options;
       options.file = file_;
       options.time.gps_week = gps_week_;
       contents_.imu = attempt([&] { return format.read_imu(options, std::nullopt); });
     }
-    if (format.read_gnss && !contents_.gnss) {
+    if (format.read_gnss) {
       GnssFileOptions options;
       options.file = file_;
       options.time.gps_week = gps_week_;
       contents_.gnss = attempt([&] { return format.read_gnss(options, std::nullopt); });
     }
-    if (format.read_reference && !contents_.trajectory) {
+    if (format.read_reference) {
       ReferenceFileOptions options = ReferenceFileOptions::of_file(file_);
       options.time.gps_week = gps_week_;
       contents_.trajectory = attempt([&] { return format.read_reference(options, std::nullopt); });

@@ -68,7 +68,8 @@ TEST(Frames, OfSeveralProtocolsAreToldApart) {
   EXPECT_EQ(seen.census.number(Protocol::kUbx, 0x0215), 1);
   std::string names;
   for (const auto& [key, number] : seen.census.frames) names += frame_name(key.first, key.second) + ";";
-  EXPECT_EQ(names, "UBX 0x01 0x07;UBX 0x02 0x15;NMEA GGA;NMEA UBX;RTCM 1077;");
+  EXPECT_EQ(names, "UBX-NAV-PVT;UBX-RXM-RAWX;NMEA GGA;NMEA UBX;RTCM 1077;");
+  EXPECT_EQ(frame_name(Protocol::kUbx, 0x0259), "UBX 0x02 0x59");
   EXPECT_TRUE(seen.census.events("log.ubx").empty());
 }
 

@@ -2,6 +2,7 @@
 
 #include "coast/jobs/inspect.hpp"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <fstream>
@@ -49,10 +50,10 @@ TEST_F(Inspect, UbxNamesMessagesSignalsGapsAndWhatIsNotThere) {
   damaged[30] = 'x';
   const std::string text = text_of("rover.ubx", content + damaged);
   expect_lines(
-      text, {"rover.ubx: UBX of u-blox receivers", "       5 UBX 0x02 0x15", "       1 NMEA GGA",
+      text, {"rover.ubx: UBX of u-blox receivers", "       5 UBX-RXM-RAWX", "       1 NMEA GGA",
              "5 epochs, 2023-01-08 10:00:00.000 GPST to 2023-01-08 10:00:08.000 GPST, one every 1 s; 1 gap, the longest 5.00 s",
              "2 to 2 satellites at a time",
-             "GPS      1C:   1 satellites,       5 codes,       5 phases,     1 losses of lock, mean C/N0 45.0 dBHz",
+             "GPS      1C:   1 satellites,       5 codes,       5 phases, losses of lock     1, mean C/N0 45.0 dBHz",
              "5 with half cycles unknown", "GNSS: 5 fixes over 8.00 s", "100.0 % fixed", "with a wrong checksum", "not found",
              "without UBX-RXM-SFRBX", "without UBX-ESF-RAW"});
   // Each reader sees the damage; it is told once.

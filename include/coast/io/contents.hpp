@@ -17,7 +17,7 @@ namespace coast::io {
 
 /// Messages of one kind in a file that consists of messages.
 struct MessageCount {
-  std::string name;  ///< "UBX 0x02 0x15", "NMEA GGA", "sensor_combined 0"
+  std::string name;  ///< "UBX-RXM-RAWX", "NMEA GGA", "sensor_combined 0"
   long number = 0;
 };
 
@@ -35,8 +35,8 @@ struct FileContents {
   std::vector<std::string> refusals;  ///< what readers of this format did not find, or could not read
 };
 
-/// Reads a file with every reader that its content is for: those of the formats' table, and RINEX. Columns of a table must have
-/// the default names.
+/// Reads a file with every reader of the first format of the formats' table that recognises it and finds something, or as
+/// RINEX. Columns of a table must have the default names.
 /// @param gps_week  of files with seconds of week only
 /// @throws InputError  the file is of no kind that is read here, or nothing in it can be read
 [[nodiscard]] FileContents read_contents(const std::filesystem::path& file, std::optional<int> gps_week = std::nullopt);

@@ -29,6 +29,21 @@ int hex_digit(char c) {
   return c >= 'a' && c <= 'f' ? c - 'a' + 10 : -1;
 }
 
+/// Messages of UBX that are often recorded (u-blox F9 HPG and ZED-F9R interface descriptions).
+struct UbxName {
+  std::uint32_t id;
+  std::string_view name;
+};
+constexpr std::array<UbxName, 32> kUbxNames = {
+    {{0x0101, "NAV-POSECEF"},  {0x0102, "NAV-POSLLH"},  {0x0103, "NAV-STATUS"},    {0x0104, "NAV-DOP"},
+     {0x0107, "NAV-PVT"},      {0x0111, "NAV-VELECEF"}, {0x0112, "NAV-VELNED"},    {0x0113, "NAV-HPPOSECEF"},
+     {0x0114, "NAV-HPPOSLLH"}, {0x0120, "NAV-TIMEGPS"}, {0x0121, "NAV-TIMEUTC"},   {0x0122, "NAV-CLOCK"},
+     {0x0135, "NAV-SAT"},      {0x0136, "NAV-COV"},     {0x013c, "NAV-RELPOSNED"}, {0x0143, "NAV-SIG"},
+     {0x0161, "NAV-EOE"},      {0x0213, "RXM-SFRBX"},   {0x0214, "RXM-MEASX"},     {0x0215, "RXM-RAWX"},
+     {0x0232, "RXM-RTCM"},     {0x0501, "ACK-ACK"},     {0x068b, "CFG-VALGET"},    {0x0a04, "MON-VER"},
+     {0x0a09, "MON-HW"},       {0x0d01, "TIM-TP"},      {0x0d03, "TIM-TM2"},       {0x1002, "ESF-MEAS"},
+     {0x1003, "ESF-RAW"},      {0x1010, "ESF-STATUS"},  {0x1014, "ESF-ALG"},       {0x1015, "ESF-INS"}}};
+
 /// The three letters that tell a sentence: after the two of the talker; of one maker ("$PUBX", "$VNINS") those of the maker.
 std::uint32_t sentence_id(std::string_view content) {
   const std::string_view address = content.substr(0, content.find(','));
@@ -51,6 +66,8 @@ std::string_view name_of(Protocol protocol) {
 std::string frame_name(Protocol protocol, std::uint32_t id) {
   switch (protocol) {
     case Protocol::kUbx:
+      for (const UbxName& known : kUbxNames)
+        if (known.id == id) return fmt::format("UBX-{}", known.name);
       return fmt::format("UBX 0x{:02X} 0x{:02X}", id >> 8, id & 0xffU);
     case Protocol::kNmea:
       if (id == 0) return "NMEA";

@@ -13,7 +13,7 @@ enum class Protocol : std::uint8_t { kUbx, kNmea, kRtcm3, kVectorNav };
 inline constexpr std::size_t kProtocols = 4;
 
 [[nodiscard]] std::string_view name_of(Protocol protocol);
-/// "UBX 0x02 0x15", "NMEA GGA", "RTCM 1077", "VectorNav 0x0E"
+/// "UBX-RXM-RAWX", "UBX 0x02 0x59" for a message without a name here, "NMEA GGA", "RTCM 1077", "VectorNav 0x0E"
 [[nodiscard]] std::string frame_name(Protocol protocol, std::uint32_t id);
 
 /// One message. UBX: the id is class * 256 + id; NMEA: the three letters of the sentence, or PUB of $PUBX; RTCM 3: the message

@@ -75,7 +75,7 @@ Section observations_section(const record::ObservationRecording& recording) {
   section.lines.push_back(fmt::format("{} to {} satellites at a time", fewest, most));
   for (const auto& [key, s] : signals) {
     std::string line =
-        fmt::format("{:8} {}{}: {:3} satellites, {:7} codes, {:7} phases, {:5} losses of lock", name_of(key.first),
+        fmt::format("{:8} {}{}: {:3} satellites, {:7} codes, {:7} phases, losses of lock {:5}", name_of(key.first),
                     key.second.band, key.second.tracking, s.satellites.size(), s.codes, s.phases, s.losses);
     if (s.half_cycles > 0) line += fmt::format(", {} with half cycles unknown", s.half_cycles);
     if (s.with_cn0 > 0) line += fmt::format(", mean C/N0 {:.1f} dBHz", s.cn0 / static_cast<double>(s.with_cn0));
