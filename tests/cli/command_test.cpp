@@ -400,7 +400,7 @@ TEST(Recordings, CarDriveIsConsistentAndCoasts) {
   }
 }
 
-TEST(Command, InspectSaysWhatIsInAFile) {
+TEST(Commands, InspectSaysWhatIsInAFile) {
   const test::TemporaryDirectory folder;
   const Outcome gnss = run(fmt::format("inspect '{}'", (recording() / "gnss.pos").string()), folder.path());
   EXPECT_EQ(gnss.status, 0) << gnss.error;
