@@ -271,7 +271,8 @@ TEST(UbxImu, IsReadWithUnitsAndAxes) {
       both += rates + forces;
     }
     if (i % 100 != 8) continue;
-    const std::string epoch = rawx(kUbxTestWeek, 36000.0 + i / 100, {RawxSignal{}});
+    const int second = i / 100;
+    const std::string epoch = rawx(kUbxTestWeek, 36000.0 + second, {RawxSignal{}});
     raw += epoch;
     slow += epoch;
     both += epoch;
