@@ -57,10 +57,10 @@ InspectResult inspect(const InspectConfig& config, const Progress& progress) {
 
 std::string told(const InspectConfig& config, const InspectResult& result) {
   std::string text = fmt::format("{}: {}\n", config.file.string(), result.format);
-  const auto add_list = [&text](const std::string& title, const std::vector<std::string>& lines) {
+  const auto add_list = [&text](std::string_view title, const std::vector<std::string>& lines) {
     if (lines.empty()) return;
-    text += title + "\n";
-    for (const std::string& line : lines) text += "  " + line + "\n";
+    text += fmt::format("{}\n", title);
+    for (const std::string& line : lines) text += fmt::format("  {}\n", line);
   };
   for (const InspectResult::Section& section : result.sections) add_list(section.title, section.lines);
   add_list("warnings", result.warnings);

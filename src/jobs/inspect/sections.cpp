@@ -68,9 +68,9 @@ Section observations_section(const record::ObservationRecording& recording) {
     most = std::max(most, satellites.size());
   }
   Section section{"observations", {}};
-  if (!recording.marker.empty()) section.lines.push_back("marker " + recording.marker);
-  if (!recording.receiver.empty()) section.lines.push_back("receiver " + recording.receiver);
-  if (!recording.antenna.empty()) section.lines.push_back("antenna " + recording.antenna);
+  if (!recording.marker.empty()) section.lines.push_back(fmt::format("marker {}", recording.marker));
+  if (!recording.receiver.empty()) section.lines.push_back(fmt::format("receiver {}", recording.receiver));
+  if (!recording.antenna.empty()) section.lines.push_back(fmt::format("antenna {}", recording.antenna));
   section.lines.push_back(fmt::format("{} epochs, {}", recording.epochs.size(), span_of(recording.epochs)));
   section.lines.push_back(fmt::format("{} to {} satellites at a time", fewest, most));
   for (const auto& [key, s] : signals) {
@@ -107,7 +107,7 @@ Section navigation_section(const record::NavigationRecording& recording) {
                                    n.ephemerides, geo::to_string(n.first), geo::to_string(n.last));
     if (!n.unhealthy.empty()) {
       line += "; not healthy:";
-      for (const record::Satellite satellite : n.unhealthy) line += " " + to_string(satellite);
+      for (const record::Satellite satellite : n.unhealthy) line += fmt::format(" {}", to_string(satellite));
     }
     section.lines.push_back(std::move(line));
   }
