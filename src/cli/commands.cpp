@@ -8,6 +8,7 @@
 #include "coast/jobs/diagnose.hpp"
 #include "coast/jobs/estimator_study.hpp"
 #include "coast/jobs/file_kind.hpp"
+#include "coast/jobs/inspect.hpp"
 #include "coast/jobs/outage.hpp"
 #include "coast/jobs/ppk.hpp"
 #include "coast/jobs/process.hpp"
@@ -138,6 +139,14 @@ void compare(const std::filesystem::path& first, const std::filesystem::path& se
   const jobs::ComparisonResult result = jobs::compare(config, on_terminal(line, options.quiet));
   if (!options.out.empty()) jobs::write(config, result, jobs::results_folder(first, options.out, jobs::files_of(config)));
   if (!options.quiet) fmt::print("{}", jobs::told(config, result, options.out));
+}
+
+void inspect(const std::filesystem::path& file, std::optional<int> gps_week, const CommonOptions& options) {
+  ProgressLine line(options.quiet);
+  const jobs::InspectConfig config{file, gps_week};
+  const jobs::InspectResult result = jobs::inspect(config, on_terminal(line, options.quiet));
+  line.clear();
+  fmt::print("{}", jobs::told(config, result));
 }
 
 void report(const std::filesystem::path& folder, const CommonOptions& options) {

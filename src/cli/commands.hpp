@@ -32,6 +32,8 @@ struct DiagnoseOptions {
 void diagnose(const std::filesystem::path& run_yaml, const DiagnoseOptions& choice, const CommonOptions& options);
 void compare(const std::filesystem::path& first, const std::filesystem::path& second, const Eigen::Vector3d& lever_arm_b,
              const CommonOptions& options);
+/// Prints what is in a file.
+void inspect(const std::filesystem::path& file, std::optional<int> gps_week, const CommonOptions& options);
 void report(const std::filesystem::path& folder, const CommonOptions& options);
 
 }  // namespace coast::cli

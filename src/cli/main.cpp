@@ -137,6 +137,14 @@ void add_compare(CLI::App& app, std::filesystem::path& first, std::filesystem::p
   });
 }
 
+void add_inspect(CLI::App& app, std::filesystem::path& input, std::optional<int>& gps_week) {
+  auto* inspect = app.add_subcommand("inspect", "what is in a file: kind, span, rates, satellites and signals, gaps, damage");
+  inspect->add_option("file", input, "a recording of an IMU or of GNSS, RINEX, or a trajectory")->required();
+  inspect->add_option("--gps-week", gps_week, "of files with seconds of week only")->check(CLI::Range(1, 9999));
+  inspect->footer("Example:\n  coast inspect rover.ubx.gz");
+  inspect->callback([&input, &gps_week] { coast::cli::inspect(input, gps_week, {}); });
+}
+
 void add_diagnose(CLI::App& app, std::filesystem::path& input, coast::cli::DiagnoseOptions& choice, CommonOptions& common) {
   auto* diagnose = subcommand(
       app, "diagnose", "errors that the configured model leaves out: which, how large, how certain, what modelling them gains",
@@ -196,6 +204,9 @@ int run(int argc, char** argv) {
   add_synth(app, input, common);
 
   add_compare(app, input, other, lever_arm, common);
+
+  std::optional<int> gps_week;
+  add_inspect(app, input, gps_week);
 
   auto* report = subcommand(app, "report", "the HTML page again from stored results", "coast report results", common);
   report->add_option("folder", input, "folder of a run")->required();

@@ -38,8 +38,9 @@ std::optional<FileKind> binary_kind(std::string_view head) {
   if (head.size() > 262 && head.substr(257, 5) == "ustar")
     return FileKind{"a tar archive", "Unpack it and name the file inside."};
   if (head.find("\xb5\x62") != std::string_view::npos)  // NMEA sentences may be between its messages
-    return FileKind{"a UBX file of a u-blox receiver",
-                    "Convert it: to RINEX for `gnss: {ppk: ..}`, e.g. with convbin of RTKLIB, or to a table of positions."};
+    return FileKind{
+        "a UBX file of a u-blox receiver",
+        "It belongs under `gnss: {file: ..}`, `imu: {file: ..}`, or `gnss: {ppk: {rover: .., base: .., nav: [..]}}`."};
   return std::nullopt;
 }
 

@@ -275,6 +275,12 @@ void check_overlap(const record::ImuRecording& imu, const record::GnssRecording&
 
 }  // namespace
 
+Inspection inspect(const record::GnssRecording& gnss) {
+  Inspection result;
+  if (!gnss.fixes.empty()) describe_gnss(gnss, result);
+  return result;
+}
+
 Inspection inspect(const record::ImuRecording& imu) {
   Inspection result;
   if (imu.samples.empty()) return result;

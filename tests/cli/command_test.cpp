@@ -400,5 +400,17 @@ TEST(Recordings, CarDriveIsConsistentAndCoasts) {
   }
 }
 
+TEST(Commands, InspectSaysWhatIsInAFile) {
+  const test::TemporaryDirectory folder;
+  const Outcome gnss = run(fmt::format("inspect '{}'", (recording() / "gnss.pos").string()), folder.path());
+  EXPECT_EQ(gnss.status, 0) << gnss.error;
+  EXPECT_NE(text_of(folder.path() / "stdout.txt").find("fixes over"), std::string::npos);
+  const std::string imu = (recording() / "imu.csv").string();
+  EXPECT_EQ(run(fmt::format("inspect '{}' --gps-week 2374", imu), folder.path()).status, 0);
+  EXPECT_NE(text_of(folder.path() / "stdout.txt").find("IMU: "), std::string::npos);
+  const Outcome neither = run(fmt::format("inspect '{}'", (recording() / "run.yaml").string()), folder.path());
+  EXPECT_EQ(neither.status, 2) << neither.error;
+}
+
 }  // namespace
 }  // namespace coast::cli

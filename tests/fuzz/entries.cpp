@@ -14,6 +14,7 @@
 #include "coast/io/products.hpp"
 #include "coast/io/reference.hpp"
 #include "coast/io/rinex.hpp"
+#include "coast/io/time_marks.hpp"
 #include "coast/io/yaml.hpp"
 #include "coast/record/error.hpp"
 #include "support/support.hpp"
@@ -109,6 +110,12 @@ void check(const record::NavigationRecording& navigation) {
     require(std::abs(e.toe - e.toc) <= 302401.0, "orbit and clock are of one week");
   }
   for (const auto& e : navigation.tabulated) require(e.r_e.allFinite() && e.v_e.allFinite(), "orbits are finite");
+}
+
+void check(const record::TimeMarkRecording& recording) {
+  require(!recording.marks.empty(), "at least one mark");
+  for (std::size_t i = 1; i < recording.marks.size(); ++i)
+    require(recording.marks[i].t >= recording.marks[i - 1].t, "time does not decrease");
 }
 
 void check(const record::PreciseOrbits& orbits) {
@@ -247,6 +254,31 @@ void packets(std::string_view bytes) {
   read_and_check([&] { return io::read_packets(options); });
 }
 
+/// IMU and positions of a format by its name.
+void both_of(std::string_view bytes, const char* format) {
+  io::ImuFileOptions imu_options;
+  imu_options.format = format;
+  imu(bytes, imu_options);
+  io::GnssFileOptions gnss_options;
+  gnss_options.format = format;
+  gnss(bytes, gnss_options);
+}
+
+void ubx(std::string_view bytes) {
+  both_of(bytes, "ubx");
+  rinex_observation(bytes);  // both by content
+  rinex_navigation(bytes);
+  read_and_check([&] { return io::read_time_marks(as_file(bytes)); });
+}
+
+void vectornav(std::string_view bytes) {
+  both_of(bytes, "vectornav");
+}
+
+void ulog(std::string_view bytes) {
+  both_of(bytes, "ulog");
+}
+
 void antex(std::string_view bytes) {
   read_and_check([&] { return io::read_antex(as_file(bytes)); });
 }
@@ -281,6 +313,9 @@ const std::vector<Entry>& entries() {
       {"member_blocks", member_blocks},
       {"noise_levels", noise_levels},
       {"packets", packets},
+      {"ubx", ubx},
+      {"ulog", ulog},
+      {"vectornav", vectornav},
       {"yaml", yaml},
   };
   return table;

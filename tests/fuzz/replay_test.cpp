@@ -26,6 +26,24 @@ TEST(FuzzCorpus, EveryFileIsReadOrRefused) {
   }
 }
 
+/// Messages of receivers, cut off anywhere and with any one byte wrong.
+TEST(FuzzCorpus, FilesOfReceiversAreReadOrRefusedCutOrSpoiled) {
+  constexpr std::size_t kStep = 5;  // of the places tried; no field is a multiple of it long throughout
+  for (const Entry& entry : entries()) {
+    if (entry.name != "ubx" && entry.name != "vectornav" && entry.name != "ulog") continue;
+    for (const auto& file : std::filesystem::directory_iterator(kCorpus / entry.name)) {
+      std::ifstream stream(file.path(), std::ios::binary);
+      const std::string bytes{std::istreambuf_iterator<char>(stream), std::istreambuf_iterator<char>()};
+      for (std::size_t at = 1; at < bytes.size(); at += kStep) {
+        std::string spoiled = bytes;
+        spoiled[at] = static_cast<char>(~spoiled[at]);
+        ASSERT_NO_THROW(entry.run(bytes.substr(0, at))) << file.path() << " cut at " << at;
+        ASSERT_NO_THROW(entry.run(spoiled)) << file.path() << " spoiled at " << at;
+      }
+    }
+  }
+}
+
 TEST(FuzzCorpus, EveryFolderHasItsEntry) {
   for (const auto& folder : std::filesystem::directory_iterator(kCorpus)) {
     const auto& all = entries();

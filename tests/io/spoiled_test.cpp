@@ -6,6 +6,7 @@
 #include <cstring>
 
 #include "files.hpp"
+#include "receiver_messages.hpp"
 
 namespace coast::io {
 namespace {
@@ -287,10 +288,31 @@ std::vector<Spoiled> reference_files() {
   };
 }
 
+std::vector<Spoiled> receiver_files() {
+  const std::string version = test::ubx(0x0a, 0x04, std::string(40, ' '));
+  std::string wrong = version;
+  wrong.back() = static_cast<char>(~wrong.back());
+  const std::string ulog_head("ULog\x01\x12\x35\x01\0\0\0\0\0\0\0\0", 16);
+  const std::string vectornav = "\xfa\x02" + test::Bytes().u2(1U << 9).u1(7).str();
+  const std::string whole = vectornav + test::Bytes().u2(0).str();
+  return {
+      {"UBX without an IMU", Kind::kImu, version, "", "%: a UBX file without UBX-ESF-RAW and UBX-ESF-MEAS"},
+      {"UBX without positions", Kind::kGnss, version, "", "%: a UBX file without UBX-NAV-PVT"},
+      {"UBX with a wrong checksum alone", Kind::kGnss, wrong, "format: ubx", "%: a UBX file without UBX-NAV-PVT"},
+      {"text as UBX", Kind::kGnss, pos(), "format: ubx", "%: a UBX file without UBX-NAV-PVT"},
+      {"VectorNav without a checksum", Kind::kImu, whole, "format: vectornav", "%: 0 IMU samples in VectorNav messages"},
+      {"text as VectorNav", Kind::kGnss, pos(), "format: vectornav", "%: VectorNav messages without a position"},
+      {"ULog without anything", Kind::kImu, ulog_head, "", "%: a flight log with 0 IMU samples"},
+      {"ULog without positions", Kind::kGnss, ulog_head, "", "%: a flight log without positions"},
+      {"ULog cut in its header", Kind::kImu, ulog_head.substr(0, 12), "", "%: the header is cut off"},
+      {"text as ULog", Kind::kImu, imu_csv(), "format: ulog", "%: no \"ULog\" at its begin"},
+  };
+}
+
 TEST(SpoiledInput, EveryOneIsRefusedWithFileAndLine) {
   const Files files;
   auto all = imu_files();
-  for (const auto& list : {binary_imu_files(), gnss_files(), gnss_tables(), reference_files()})
+  for (const auto& list : {binary_imu_files(), receiver_files(), gnss_files(), gnss_tables(), reference_files()})
     all.insert(all.end(), list.begin(), list.end());
   EXPECT_GE(all.size(), 100U);
   int index = 0;

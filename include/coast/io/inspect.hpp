@@ -38,6 +38,9 @@ struct Inspection {
 /// if the vehicle moves along its forward axis.
 [[nodiscard]] Inspection inspect(const record::ImuRecording& body, const record::GnssRecording& gnss);
 
+/// The same for GNSS alone: span, rate, gaps, quality, stated sigmas.
+[[nodiscard]] Inspection inspect(const record::GnssRecording& gnss);
+
 /// The same for an IMU alone (calibration): span, rate, gaps, repetitions, size of the specific force.
 [[nodiscard]] Inspection inspect(const record::ImuRecording& imu);
 

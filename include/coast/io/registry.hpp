@@ -1,6 +1,7 @@
 #pragma once
 // The file formats, in an explicit table. To add one, write a file under src/io/formats and a line in registry.cpp.
 
+#include <filesystem>
 #include <functional>
 #include <optional>
 #include <string>
@@ -8,6 +9,7 @@
 #include <vector>
 
 #include "coast/geo/time.hpp"
+#include "coast/io/contents.hpp"
 #include "coast/io/gnss.hpp"
 #include "coast/io/imu.hpp"
 #include "coast/io/reference.hpp"
@@ -29,6 +31,12 @@ struct Format {
   std::function<record::ImuRecording(const ImuFileOptions&, Near)> read_imu;
   std::function<record::GnssRecording(const GnssFileOptions&, Near)> read_gnss;
   std::function<record::Trajectory(const ReferenceFileOptions&, Near)> read_reference;
+  /// Formats beside RINEX only: what is no other format is read as RINEX.
+  std::function<record::ObservationRecording(const std::filesystem::path&)> read_observations = {};
+  std::function<record::NavigationRecording(const std::filesystem::path&)> read_navigation = {};
+  std::function<record::TimeMarkRecording(const std::filesystem::path&)> read_time_marks = {};
+  /// Of a file that consists of messages: how many of which kind, the most frequent first.
+  std::function<std::vector<MessageCount>(const std::filesystem::path&)> count_messages = {};
 };
 
 /// All formats, the most specific first: the first that recognises a file reads it.

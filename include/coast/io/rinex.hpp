@@ -1,6 +1,7 @@
 #pragma once
 // RINEX: observations and broadcast navigation messages, versions 2.1x, 3.0x and 4.0x (IGS/RTCM RINEX WG: RINEX 2.11, 3.05,
-// 4.01). Files may be gzip-compressed; observation files also Hatanaka-compressed (Hatanaka 2008: CRINEX 1.0 and 3.0).
+// 4.01). Files may be gzip-compressed; observation files also Hatanaka-compressed (Hatanaka 2008: CRINEX 1.0 and 3.0). The same
+// functions read files of receivers (registry.hpp), recognised by their content.
 
 #include <filesystem>
 #include <vector>
@@ -14,14 +15,18 @@ namespace coast::io {
 /// converted from the time scale of TIME OF FIRST OBS to GPS time. A zero or blank is a missing measurement. Counted and left
 /// out, with an event: numbers that cannot be read or are impossible, satellites that occur twice in an epoch, epochs that
 /// repeat or go back in time, an epoch cut off by the end of the file, cycle-slip records. A power failure (flag 1) is a loss
-/// of lock of all signals.
-/// @throws InputError  not a RINEX observation file, an incomplete header, an epoch line that cannot be read; with line
+/// of lock of all signals. UBX: those of UBX-RXM-RAWX; a loss of lock where the time of lock is shorter than before, or than
+/// the interval, or where half a cycle has been resolved.
+/// @throws InputError  not a RINEX observation file, an incomplete header, an epoch line that cannot be read, with line; a file
+/// of
+///                     a receiver without observations
 [[nodiscard]] record::ObservationRecording read_observations(const std::filesystem::path& file);
 
 /// Every ephemeris of GPS (LNAV), Galileo (I/NAV and F/NAV), BeiDou (D1, D2), QZSS, GLONASS and SBAS. Messages that the orbit
 /// computation does not support (CNAV, NavIC, system time) are counted, repeated ones are kept once, impossible ones (an
-/// eccentricity above 0.5, an orbit below the ground) are left out and counted.
-/// @throws InputError  not a RINEX navigation file, or nothing in it that can be used
+/// eccentricity above 0.5, an orbit below the ground) are left out and counted. UBX: LNAV, I/NAV and GLONASS of UBX-RXM-SFRBX.
+/// @throws InputError  not a RINEX navigation file, or nothing in it that can be used; a file of a receiver without navigation
+///                     messages, or without a message that states the week
 [[nodiscard]] record::NavigationRecording read_navigation(const std::filesystem::path& file);
 /// Joins several files, e.g. one per system or one per day. The ionosphere model is that of the first file.
 /// @throws InputError  as above, for any of them

@@ -5,6 +5,9 @@
 
 namespace coast::io {
 
+[[nodiscard]] Format ubx_format();
+[[nodiscard]] Format ulog_format();
+[[nodiscard]] Format vectornav_format();
 [[nodiscard]] Format waypoint_imr_format();
 [[nodiscard]] Format sbet_format();
 [[nodiscard]] Format rtklib_pos_format();

@@ -3,9 +3,11 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <tuple>
+#include <iterator>
 
+#include "../ephemerides.hpp"
 #include "../file_kind.hpp"
+#include "../registry_lookup.hpp"
 #include "../rinex_lines.hpp"
 #include "../text.hpp"
 #include "coast/io/rinex.hpp"
@@ -29,32 +31,6 @@ struct Message {
   std::array<double, kLargestMessage> values{};  ///< blank: 0
   std::size_t lines = 0;                         ///< after the first
 };
-
-/// The instant with this second of week nearest to another: the week of the file is not used, as some programs
-/// write modulo 1024.
-geo::GpsTime nearest(geo::GpsTime to, double sow) {
-  constexpr double kHalfWeek = 302400.0;
-  const double off = std::remainder(sow - to.sow(), 2.0 * kHalfWeek);
-  return to + off;
-}
-
-/// Of neighbours with the same key the first is kept. @return number of removed ones
-template <class Ephemeris, class Key>
-long drop_repeated(std::vector<Ephemeris>& all, const Key& key) {
-  const auto end = std::unique(all.begin(), all.end(), [&](const auto& a, const auto& b) { return key(a) == key(b); });
-  const auto count = static_cast<long>(all.end() - end);
-  all.erase(end, all.end());
-  return count;
-}
-
-/// By satellite and time.  @return number of duplicates
-long sort_out(record::NavigationRecording& recording) {
-  const auto kepler_key = [](const KeplerEphemeris& e) { return std::tuple(e.satellite, e.toe, e.sources, e.issue, e.toc); };
-  std::ranges::stable_sort(recording.kepler, {}, kepler_key);
-  const auto tabulated_key = [](const TabulatedEphemeris& e) { return std::tuple(e.satellite, e.t); };
-  std::ranges::stable_sort(recording.tabulated, {}, tabulated_key);
-  return drop_repeated(recording.kepler, kepler_key) + drop_repeated(recording.tabulated, tabulated_key);
-}
 
 class NavigationReader {
  public:
@@ -249,7 +225,8 @@ void NavigationReader::keep_kepler(const Message& m) {
   e.eccentricity = v[8];
   e.cus = v[9];
   e.sqrt_a = v[10];
-  e.toe = nearest(m.t, v[11] + (beidou ? kGpsMinusBeidou : 0.0));
+  // The week of the file is not used, as some programs write it modulo 1024.
+  e.toe = nearest_second_of_week(m.t, v[11] + (beidou ? kGpsMinusBeidou : 0.0));
   e.cic = v[12];
   e.node = v[13];
   e.cis = v[14];
@@ -263,12 +240,9 @@ void NavigationReader::keep_kepler(const Message& m) {
   e.health = static_cast<int>(std::clamp(v[24], 0.0, 65535.0));
   e.group_delay = {v[25], v[26]};
   if (m.satellite.system == SatelliteSystem::kGps || m.satellite.system == SatelliteSystem::kQzss)
-    e.group_delay[1] = 0.0;              // this field is the issue of the clock there
-  constexpr double kLeastRoot = 2500.0;  // sqrt(m): below the surface
-  constexpr double kMostRoot = 8000.0;   // 64 000 km
+    e.group_delay[1] = 0.0;  // this field is the issue of the clock there
   constexpr double kWeek = 604800.0;
-  if (!(e.eccentricity >= 0.0 && e.eccentricity < 0.5) || !(e.sqrt_a > kLeastRoot && e.sqrt_a < kMostRoot) ||
-      !(v[11] >= 0.0 && v[11] <= kWeek) || !(std::abs(e.clock[0]) < 1.0)) {
+  if (!is_possible(e) || !(v[11] >= 0.0 && v[11] <= kWeek)) {
     ++impossible_;
     return;
   }
@@ -292,11 +266,7 @@ void NavigationReader::keep_tabulated(const Message& m) {
   else
     e.accuracy_m = v[10];
   if (e.channel > 128) e.channel -= 256;  // some programs write the byte unsigned
-  constexpr double kNearest = 7e6;        // m
-  constexpr double kFarthest = 6e7;       // m
-  constexpr double kFastest = 1e4;        // m/s
-  if (!(e.r_e.norm() > kNearest && e.r_e.norm() < kFarthest) || !(e.v_e.norm() < kFastest) || !(e.a_e.norm() < 1.0) ||
-      !(std::abs(e.clock_bias) < 1.0)) {
+  if (!is_possible(e)) {
     ++impossible_;
     return;
   }
@@ -322,6 +292,7 @@ void NavigationReader::report() {
 }  // namespace
 
 record::NavigationRecording read_navigation(const std::filesystem::path& file) {
+  if (const Format* format = format_beside_rinex(file, &Format::read_navigation)) return format->read_navigation(file);
   return read_as(file, FileKind::Content::kRinex, "RINEX navigation messages", [&] { return NavigationReader(file).read(); });
 }
 

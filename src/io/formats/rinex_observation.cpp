@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "../file_kind.hpp"
+#include "../registry_lookup.hpp"
 #include "../rinex_lines.hpp"
 #include "../text.hpp"
 #include "coast/io/rinex.hpp"
@@ -319,6 +320,7 @@ void ObservationReader::report() {
 }  // namespace
 
 record::ObservationRecording read_observations(const std::filesystem::path& file) {
+  if (const Format* format = format_beside_rinex(file, &Format::read_observations)) return format->read_observations(file);
   return read_as(file, FileKind::Content::kRinex, "RINEX observations", [&] { return ObservationReader(file).read(); });
 }
 

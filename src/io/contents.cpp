@@ -1,0 +1,109 @@
+#include "coast/io/contents.hpp"
+
+#include <algorithm>
+
+#include "coast/io/rinex.hpp"
+#include "coast/io/time_marks.hpp"
+#include "registry_lookup.hpp"
+
+namespace coast::io {
+
+namespace {
+
+class ContentsReader {
+ public:
+  ContentsReader(const std::filesystem::path& file, std::optional<int> gps_week) : file_(file), gps_week_(gps_week) {}
+
+  FileContents read() {
+    contents_.source = file_.string();
+    if (const auto kind = file_kind(read_head(file_, kHead)); kind && kind->content == FileKind::Content::kRinex)
+      read_rinex();
+    else
+      read_formats();
+    if (!found()) refuse();
+    return std::move(contents_);
+  }
+
+ private:
+  static constexpr std::size_t kHead = 4096;
+
+  /// What `read` returns; if it fails, why is noted.
+  template <class Read>
+  auto attempt(Read&& read) -> std::optional<decltype(read())> {
+    try {
+      return read();
+    } catch (const InputError& error) {
+      contents_.refusals.emplace_back(error.what());
+      return std::nullopt;
+    }
+  }
+
+  void read_rinex() {
+    contents_.format = "RINEX";
+    contents_.observations = attempt([&] { return read_observations(file_); });
+    if (contents_.observations) return;
+    contents_.navigation = attempt([&] { return read_navigation(file_); });
+    if (contents_.navigation) contents_.refusals.clear();  // a file is of one kind
+  }
+
+  void read_formats() {
+    const FileHead head = head_of(file_);
+    for (const Format& format : formats()) {
+      if (!format.sniff || !format.sniff(head)) continue;
+      read_format(format);
+      if (!found()) continue;
+      // A table or a trajectory is of one kind: that readers of others refuse it says nothing.
+      if (!format.count_messages) contents_.refusals.clear();
+      return;
+    }
+  }
+
+  void read_format(const Format& format) {
+    contents_.format = format.description;
+    if (format.count_messages) contents_.messages = format.count_messages(file_);
+    if (format.read_imu) {
+      ImuFileOptions options;
+      options.file = file_;
+      options.time.gps_week = gps_week_;
+      contents_.imu = attempt([&] { return format.read_imu(options, std::nullopt); });
+    }
+    if (format.read_gnss) {
+      GnssFileOptions options;
+      options.file = file_;
+      options.time.gps_week = gps_week_;
+      contents_.gnss = attempt([&] { return format.read_gnss(options, std::nullopt); });
+    }
+    if (format.read_reference) {
+      ReferenceFileOptions options = ReferenceFileOptions::of_file(file_);
+      options.time.gps_week = gps_week_;
+      contents_.trajectory = attempt([&] { return format.read_reference(options, std::nullopt); });
+    }
+    if (format.read_observations) contents_.observations = attempt([&] { return format.read_observations(file_); });
+    if (format.read_navigation) contents_.navigation = attempt([&] { return format.read_navigation(file_); });
+    if (format.read_time_marks) contents_.marks = attempt([&] { return format.read_time_marks(file_); });
+  }
+
+  [[nodiscard]] bool found() const {
+    return contents_.imu || contents_.gnss || contents_.observations || contents_.navigation || contents_.trajectory ||
+           contents_.marks || !contents_.messages.empty();
+  }
+
+  [[noreturn]] void refuse() const {
+    refuse_other_kind(file_, FileKind::Content::kRinex, "a recording");
+    if (contents_.refusals.empty())
+      throw InputError({file_.string(), 0, "not recognised", "a recording of an IMU or of GNSS, RINEX, or a trajectory", ""});
+    throw InputError({file_.string(), 0, contents_.refusals.front(), "", ""});
+  }
+
+  const std::filesystem::path& file_;
+  std::optional<int> gps_week_;
+  FileContents contents_;
+};
+
+}  // namespace
+
+FileContents read_contents(const std::filesystem::path& file, std::optional<int> gps_week) {
+  return ContentsReader(file, gps_week).read();
+}
+
+}  // namespace coast::io

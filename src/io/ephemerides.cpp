@@ -1,0 +1,52 @@
+#include "ephemerides.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <tuple>
+
+namespace coast::io {
+
+namespace {
+
+/// Of neighbours with the same key the first is kept.  @return number of removed ones
+template <class Ephemeris, class Key>
+long drop_repeated(std::vector<Ephemeris>& all, const Key& key) {
+  const auto end = std::unique(all.begin(), all.end(), [&](const auto& a, const auto& b) { return key(a) == key(b); });
+  const auto count = static_cast<long>(all.end() - end);
+  all.erase(end, all.end());
+  return count;
+}
+
+}  // namespace
+
+bool is_possible(const record::KeplerEphemeris& e) {
+  constexpr double kLeastRoot = 2500.0;  // sqrt(m): below the surface
+  constexpr double kMostRoot = 8000.0;   // 64 000 km
+  return e.eccentricity >= 0.0 && e.eccentricity < 0.5 && e.sqrt_a > kLeastRoot && e.sqrt_a < kMostRoot &&
+         std::abs(e.clock[0]) < 1.0;
+}
+
+bool is_possible(const record::TabulatedEphemeris& e) {
+  constexpr double kNearest = 7e6;   // m
+  constexpr double kFarthest = 6e7;  // m
+  constexpr double kFastest = 1e4;   // m/s
+  return e.r_e.norm() > kNearest && e.r_e.norm() < kFarthest && e.v_e.norm() < kFastest && e.a_e.norm() < 1.0 &&
+         std::abs(e.clock_bias) < 1.0;
+}
+
+geo::GpsTime nearest_second_of_week(geo::GpsTime to, double sow) {
+  constexpr double kWeek = 604800.0;
+  return to + std::remainder(sow - to.sow(), kWeek);
+}
+
+long sort_out(record::NavigationRecording& recording) {
+  const auto kepler_key = [](const record::KeplerEphemeris& e) {
+    return std::tuple(e.satellite, e.toe, e.sources, e.issue, e.toc);
+  };
+  std::ranges::stable_sort(recording.kepler, {}, kepler_key);
+  const auto tabulated_key = [](const record::TabulatedEphemeris& e) { return std::tuple(e.satellite, e.t); };
+  std::ranges::stable_sort(recording.tabulated, {}, tabulated_key);
+  return drop_repeated(recording.kepler, kepler_key) + drop_repeated(recording.tabulated, tabulated_key);
+}
+
+}  // namespace coast::io
