@@ -108,8 +108,8 @@ LargestRatios largest_ratios(const std::vector<RatioAtSpread>& ratios, const Inf
 namespace {
 
 constexpr std::size_t kFewestPieces = 12;
-// Powers of the ratio whose tail is taken for exponential. A normal's squares have such a tail. In impacts and vibration the size
-// itself varies from sensor to sensor, and what is known of it is the spread of a few: Student's tail.
+// Powers of the ratio whose tail is taken for exponential. A normal's squares have such a tail. In impacts and vibration the
+// size itself varies from sensor to sensor, and what is known of it is the spread of a few: Student's tail.
 constexpr double kNormal = 1.0;
 constexpr double kStudent = 0.25;
 
