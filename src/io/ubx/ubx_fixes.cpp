@@ -198,7 +198,7 @@ void UbxFixReader::add_velocity(record::GnssFix& fix) const {
 
 void UbxFixReader::finish_epoch() {
   constexpr int kThreeD = 3, kWithImu = 4;
-  constexpr double kLargestSd = 1e6, kHighest = 1e6;  // m
+  constexpr double kLargestSd = 1e6, kHighestFix = 1e6;  // m
   const std::optional<UbxEpoch::Place>& place = epoch_.fine ? epoch_.fine : epoch_.coarse;
   if (!place && !epoch_.solution) return;
   ++rows_;
@@ -215,7 +215,7 @@ void UbxFixReader::finish_epoch() {
   const bool accuracy = place->horizontal_sd > 0.0 && place->horizontal_sd < kLargestSd && place->vertical_sd > 0.0 &&
                         place->vertical_sd < kLargestSd;
   const bool on_earth = std::abs(place->p.latitude) <= 0.5 * geo::kPi && std::abs(place->p.longitude) <= 2.0 * geo::kPi &&
-                        std::abs(place->p.height) < kHighest;
+                        std::abs(place->p.height) < kHighestFix;
   if (!on_earth || (!accuracy && !options_.sd && !epoch_.position_cov_n)) {
     ++no_accuracy_;
     return;

@@ -110,8 +110,8 @@ void take_measurements(std::string_view b, EsfSource& source) {
 }
 
 void take_raw(std::string_view b, EsfSource& source) {
-  constexpr std::size_t kHead = 4, kBlock = 8;
-  for (std::size_t at = kHead; at + kBlock <= b.size(); at += kBlock) {
+  constexpr std::size_t kHead = 4, kRawBlock = 8;
+  for (std::size_t at = kHead; at + kRawBlock <= b.size(); at += kRawBlock) {
     const auto data = number_at<std::uint32_t>(b, at);
     source.samples.take(static_cast<std::uint8_t>(data >> 24), data, number_at<std::uint32_t>(b, at + 4));
   }

@@ -146,18 +146,18 @@ void SubframeReader::refuse() const {
 }
 
 void SubframeReader::report() {
-  using Severity = record::Event::Severity;
+  using Grade = record::Event::Severity;
   recording_.events = ubx_file_events(stream_.census(), recording_.source);
-  const auto add = [&](long number, const char* kind, std::string_view text, Severity severity) {
+  const auto add = [&](long number, const char* kind, std::string_view text, Grade severity) {
     if (number == 0) return;
     recording_.events.push_back(
         {severity, kind, fmt::format("{}: {} navigation message{} {}", recording_.source, number, number == 1 ? "" : "s", text),
          std::nullopt, number});
   };
-  add(spoiled_, "navigation_spoiled", "with a wrong parity, length or week left out", Severity::kWarning);
-  add(impossible_, "navigation_impossible", "with an orbit or a clock that cannot be left out", Severity::kWarning);
+  add(spoiled_, "navigation_spoiled", "with a wrong parity, length or week left out", Grade::kWarning);
+  add(impossible_, "navigation_impossible", "with an orbit or a clock that cannot be left out", Grade::kWarning);
   for (const auto& [kind, number] : not_decoded_)
-    add(number, "navigation_unknown", fmt::format("of {} not used", kind), Severity::kInfo);
+    add(number, "navigation_unknown", fmt::format("of {} not used", kind), Grade::kInfo);
 }
 
 }  // namespace

@@ -184,9 +184,9 @@ void RawxReader::refuse() const {
 }
 
 void RawxReader::report() {
-  using Severity = record::Event::Severity;
+  using Grade = record::Event::Severity;
   recording_.events = ubx_file_events(stream_.census(), recording_.source);
-  const auto add = [&](const Count& what, const char* kind, const char* one, const char* text, Severity severity) {
+  const auto add = [&](const Count& what, const char* kind, const char* one, const char* text, Grade severity) {
     if (what.number == 0) return;
     recording_.events.push_back(
         {severity, kind,
@@ -194,15 +194,15 @@ void RawxReader::report() {
                      what.first ? "; first at " + geo::to_string(*what.first) : ""),
          what.first, what.number});
   };
-  add(spoiled_, "rawx_spoiled", "epoch", "whose length contradicts the number of signals left out", Severity::kWarning);
-  add(no_time_, "rawx_no_time", "epoch", "before the receiver knew the week left out", Severity::kInfo);
-  add(empty_, "rawx_empty", "epoch", "without a signal left out", Severity::kInfo);
-  add(unknown_, "rawx_unknown_signal", "measurement", "of an unknown satellite or signal left out", Severity::kInfo);
-  add(impossible_, "rawx_impossible", "measurement", "that no receiver measures left out", Severity::kWarning);
-  add(doubled_, "rawx_repeated_signal", "measurement", "of a signal that the epoch has already left out", Severity::kWarning);
-  add(repeated_, "rawx_repeated_epoch", "epoch", "with the time of the one before left out", Severity::kWarning);
-  add(reversed_, "rawx_reversed_epoch", "epoch", "earlier than the one before left out", Severity::kWarning);
-  add(clock_resets_, "rawx_clock_reset", "reset", "of the receiver's clock", Severity::kInfo);
+  add(spoiled_, "rawx_spoiled", "epoch", "whose length contradicts the number of signals left out", Grade::kWarning);
+  add(no_time_, "rawx_no_time", "epoch", "before the receiver knew the week left out", Grade::kInfo);
+  add(empty_, "rawx_empty", "epoch", "without a signal left out", Grade::kInfo);
+  add(unknown_, "rawx_unknown_signal", "measurement", "of an unknown satellite or signal left out", Grade::kInfo);
+  add(impossible_, "rawx_impossible", "measurement", "that no receiver measures left out", Grade::kWarning);
+  add(doubled_, "rawx_repeated_signal", "measurement", "of a signal that the epoch has already left out", Grade::kWarning);
+  add(repeated_, "rawx_repeated_epoch", "epoch", "with the time of the one before left out", Grade::kWarning);
+  add(reversed_, "rawx_reversed_epoch", "epoch", "earlier than the one before left out", Grade::kWarning);
+  add(clock_resets_, "rawx_clock_reset", "reset", "of the receiver's clock", Grade::kInfo);
 }
 
 }  // namespace

@@ -93,7 +93,7 @@ class UlogFixes {
       : options_(options), source_(source), order_(error_, repairs_) {}
 
   void take(const UlogPosition& p) {
-    constexpr double kLargestSd = 1e6, kHighest = 1e6;  // m
+    constexpr double kLargestSd = 1e6, kHighestFix = 1e6;  // m
     ++rows_;
     const auto quality = ulog_quality(p.fix_type);
     if (!quality) return count(without_);
@@ -101,7 +101,7 @@ class UlogFixes {
     const bool accuracy =
         p.horizontal_sd > 0.0 && p.horizontal_sd < kLargestSd && p.vertical_sd > 0.0 && p.vertical_sd < kLargestSd;
     const bool on_earth = std::abs(p.place.latitude) <= 0.5 * geo::kPi && std::abs(p.place.longitude) <= 2.0 * geo::kPi &&
-                          std::abs(p.place.height) < kHighest;
+                          std::abs(p.place.height) < kHighestFix;
     if (!on_earth || (!accuracy && !options_.sd)) return count(no_accuracy_);
     record::GnssFix fix;
     fix.t = *p.t + options_.time.offset_s;

@@ -33,10 +33,10 @@ std::optional<record::FixQuality> vectornav_quality(std::uint8_t fix) {
 
 /// Position of the fields PosLla, else PosEcef.
 std::optional<Eigen::Vector3d> vectornav_position(const VectorNavMessage& message, VectorNavGroup group) {
-  constexpr double kHighest = 1e6, kNearest = 5e6, kFarthest = 8e6;  // m
+  constexpr double kHighestFix = 1e6, kNearest = 5e6, kFarthest = 8e6;  // m
   if (const auto lla = message.field(group, 5)) {
     const Eigen::Vector3d p = vector_at<double>(*lla);
-    if (!(std::abs(p.x()) <= 90.0 && std::abs(p.y()) <= 360.0 && std::abs(p.z()) < kHighest)) return std::nullopt;
+    if (!(std::abs(p.x()) <= 90.0 && std::abs(p.y()) <= 360.0 && std::abs(p.z()) < kHighestFix)) return std::nullopt;
     return geo::ecef_from_geodetic({p.x() * geo::kDegree, p.y() * geo::kDegree, p.z()});
   }
   if (const auto ecef = message.field(group, 6)) {
