@@ -9,7 +9,7 @@
 namespace coast::array {
 namespace {
 
-constexpr double kInterval = 0.01;
+constexpr double kTurnInterval = 0.01;
 
 /// Turns about x with this amplitude, 0.8 Hz, beside noise; clipped to a range and rounded to a step.
 record::ImuRecording turning(double amplitude, double range, double step, std::uint64_t seed) {
@@ -18,8 +18,8 @@ record::ImuRecording turning(double amplitude, double range, double step, std::u
   record::ImuRecording recording;
   for (int n = 0; n < 6000; ++n) {
     record::ImuSample sample;
-    sample.t = geo::GpsTime::from_week(2300, 1000.0 + kInterval * (n + 1));
-    sample.dt = kInterval * (1.0 + 0.01 * noise(random));  // as a clock has them
+    sample.t = geo::GpsTime::from_week(2300, 1000.0 + kTurnInterval * (n + 1));
+    sample.dt = kTurnInterval * (1.0 + 0.01 * noise(random));  // as a clock has them
     Eigen::Vector3d rate(amplitude * std::sin(0.05 * n), 0.1, 0.0);
     for (double& value : rate) value = std::clamp(std::round((value + noise(random)) / step) * step, -range, range);
     sample.dtheta = rate * sample.dt;
@@ -59,7 +59,7 @@ TEST(Saturation, IsMarkedAsFarAsTheResamplingReaches) {
   saturation.samples.assign(recording.samples.size(), 0);
   saturation.samples[2000] = 1;  // the interval ends at 1020.01 s
   saturation.count[0] = 1;
-  const Grid grid{geo::GpsTime::from_week(2300, 1000.0), kInterval, 6000};
+  const Grid grid{geo::GpsTime::from_week(2300, 1000.0), kTurnInterval, 6000};
   SensorSignals sensor;
   sensor.usable.assign(grid.samples, kAllUsable);
   mark_saturation(sensor, saturation, recording, grid, LinearLag{grid.start, 0.1, 0.0});  // ten columns earlier
