@@ -233,24 +233,45 @@ std::vector<std::map<std::string, double>> table_of(const std::filesystem::path&
   return rows;
 }
 
-/// The recordings hold the sensor's bytes in a frame of the program that recorded them: masks of the time, IMU, GNSS 1,
-/// attitude, INS and GNSS 2 groups, then messages behind 16 bytes of its time. Here they get back the sensor's frame.
-std::string reframed(const std::filesystem::path& file, std::size_t message) {
+std::string content_of(const std::filesystem::path& file) {
   std::ifstream stream(file, std::ios::binary);
-  const std::string bytes{std::istreambuf_iterator<char>(stream), std::istreambuf_iterator<char>()};
-  constexpr std::size_t kHead = 24, kTime = 16;
-  unsigned groups = 0;
-  std::vector<unsigned> masks;
-  for (unsigned i = 0; i < 6; ++i) {
-    const unsigned mask = static_cast<unsigned char>(bytes.at(4 * i)) + 256U * static_cast<unsigned char>(bytes.at(4 * i + 1));
-    if (mask == 0) continue;
-    groups |= 1U << (i + 1);
-    masks.push_back(mask);
+  return {std::istreambuf_iterator<char>(stream), std::istreambuf_iterator<char>()};
+}
+
+/// A file of records with the time since the GPS epoch, and rates and forces of the IMU group.
+std::string records(int messages) {
+  Bytes file;
+  for (const std::uint32_t mask : {1U << 1, 1U << 2 | 1U << 3, 0U, 0U, 0U, 0U}) file.put<std::uint32_t>(mask);
+  for (int i = 0; i < messages; ++i) {
+    file.put<std::uint32_t>(2);
+    file.put<std::uint32_t>(117);
+    file.put<double>(200'000.0 + 0.01 * i);
+    file.put<std::uint64_t>(kVectorNavStart + 10'000'000ULL * static_cast<unsigned>(i));
+    put_vector(file, 0.1F * static_cast<float>(i), 0.0F, -9.8F);
+    put_vector(file, 0.0F, 0.01F, 0.0F);
   }
-  std::string framed;
-  for (std::size_t at = kHead; at < bytes.size(); at += kTime + message)
-    framed += vectornav(groups, masks, bytes.substr(at + kTime, message));
-  return framed;
+  return file.str();
+}
+
+TEST(VectorNavMessages, AreReadFromRecordsWithoutFrames) {
+  const Files files;
+  files.put("imu.vnb", records(50));
+  const auto recording = files.imu("imu.vnb");
+  ASSERT_EQ(recording.samples.size(), 50U);
+  EXPECT_NEAR(recording.samples[20].dv.x() / recording.samples[20].dt, 2.0, 1e-6);
+  EXPECT_EQ(test::count_of(recording.events, "message_cut_off"), 0);
+  const std::string whole = records(50);
+  files.put("cut.vnb", whole.substr(0, whole.size() - 7));
+  const auto cut = files.imu("cut.vnb");
+  EXPECT_EQ(cut.samples.size(), 49U);
+  EXPECT_EQ(test::count_of(cut.events, "message_cut_off"), 1);
+  std::string broken = whole;  // seven bytes are missing within the thirtieth record
+  broken.erase(24 + 29 * 48 + 28, 7);
+  files.put("broken.vnb", broken);
+  const auto rest = files.imu("broken.vnb");
+  EXPECT_GE(rest.samples.size(), 29U);
+  EXPECT_LE(rest.samples.size(), 30U);
+  EXPECT_GT(test::count_of(rest.events, "message_garbage"), 0);
 }
 
 class VectorNavRecording : public testing::Test {
@@ -264,7 +285,7 @@ class VectorNavRecording : public testing::Test {
 
 TEST_F(VectorNavRecording, HasTheImuOfItsTable) {
   const auto rows = table_of(file("vn310-imu.csv"));
-  files_.put("imu.vnb", reframed(file("vn310-imu.vnb"), 179));
+  files_.put("imu.vnb", content_of(file("vn310-imu.vnb")));
   const auto recording = files_.imu("imu.vnb");
   ASSERT_EQ(rows.size(), 18U);
   ASSERT_EQ(recording.samples.size(), 18U);
@@ -286,7 +307,7 @@ TEST_F(VectorNavRecording, HasTheImuOfItsTable) {
 
 TEST_F(VectorNavRecording, HasTheFixesOfItsTable) {
   const auto rows = table_of(file("vn310-gnss.csv"));
-  files_.put("gnss.vnb", reframed(file("vn310-gnss.vnb"), 481));
+  files_.put("gnss.vnb", content_of(file("vn310-gnss.vnb")));
   const auto recording = files_.gnss("gnss.vnb");
   ASSERT_GE(rows.size(), 11U);
   ASSERT_EQ(recording.fixes.size(), 12U);

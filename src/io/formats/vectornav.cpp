@@ -1,7 +1,7 @@
-// Binary output of VectorNav sensors, as recorded from their serial port: IMU and positions of GNSS.
+// Binary output of VectorNav sensors, as recorded from their serial port or as records: IMU and positions of GNSS.
 
-#include "../frames/frame_stream.hpp"
 #include "../vectornav/vectornav_readers.hpp"
+#include "../vectornav/vectornav_stream.hpp"
 #include "formats.hpp"
 
 namespace coast::io {
@@ -17,7 +17,7 @@ bool sniff_vectornav(const FileHead& head) {
 Format vectornav_format() {
   Format format{"vectornav", "binary output of VectorNav sensors", sniff_vectornav, read_vectornav_imu, read_vectornav_gnss,
                 {}};
-  format.count_messages = [](const std::filesystem::path& file) { return count_frames(file, kVectorNavLog); };
+  format.count_messages = count_vectornav_messages;
   return format;
 }
 

@@ -9,6 +9,7 @@
 #include "coast/geo/earth.hpp"
 #include "coast/geo/units.hpp"
 #include "vectornav_readers.hpp"
+#include "vectornav_stream.hpp"
 #include "vectornav_values.hpp"
 
 namespace coast::io {
@@ -49,15 +50,12 @@ std::optional<Eigen::Vector3d> vectornav_position(const VectorNavMessage& messag
 class VectorNavGnssReader {
  public:
   explicit VectorNavGnssReader(const GnssFileOptions& options)
-      : options_(options), stream_(options.file, kVectorNavLog), order_(error_, repairs_) {}
+      : options_(options), stream_(options.file), order_(error_, repairs_) {}
 
   record::GnssRecording read() {
     recording_.source = stream_.name();
-    MessageFrame frame;
     VectorNavMessage message;
-    while (stream_.next(frame))
-      if (frame.protocol == Protocol::kVectorNav && message.parse(frame.payload) == VectorNavMessage::Head::kWhole)
-        take(message);
+    while (stream_.next(message)) take(message);
     recording_.events = vectornav_file_events(stream_.census(), recording_.source);
     if (recording_.fixes.empty()) refuse();
     repairs_.finish(rows_, recording_.events);
@@ -74,7 +72,7 @@ class VectorNavGnssReader {
   void report();
 
   const GnssFileOptions& options_;
-  FrameStream stream_;
+  VectorNavStream stream_;
   Repairs repairs_;
   WeekClock::MakeError error_ = [this](auto found, auto expected, auto what_to_do) {
     return InputError({stream_.name(), 0, fmt::format("position {}: {}", rows_, found), expected, what_to_do});

@@ -9,6 +9,7 @@
 #include "../repairs.hpp"
 #include "coast/geo/units.hpp"
 #include "vectornav_readers.hpp"
+#include "vectornav_stream.hpp"
 #include "vectornav_values.hpp"
 
 namespace coast::io {
@@ -60,15 +61,12 @@ std::optional<float> temperature_of(const VectorNavMessage& message) {
 class VectorNavImuReader {
  public:
   explicit VectorNavImuReader(const ImuFileOptions& options)
-      : options_(options), stream_(options.file, kVectorNavLog), order_(error_, repairs_) {}
+      : options_(options), stream_(options.file), order_(error_, repairs_) {}
 
   record::ImuRecording read() {
     recording_.source = stream_.name();
-    MessageFrame frame;
     VectorNavMessage message;
-    while (stream_.next(frame))
-      if (frame.protocol == Protocol::kVectorNav && message.parse(frame.payload) == VectorNavMessage::Head::kWhole)
-        take(message);
+    while (stream_.next(message)) take(message);
     if (recording_.samples.size() < 2) refuse();
     finish();
     return std::move(recording_);
@@ -131,7 +129,7 @@ class VectorNavImuReader {
   }
 
   const ImuFileOptions& options_;
-  FrameStream stream_;
+  VectorNavStream stream_;
   record::ImuRecording recording_;
   Repairs repairs_;
   WeekClock::MakeError error_ = [this](auto found, auto expected, auto what_to_do) {

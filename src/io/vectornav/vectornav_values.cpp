@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "vectornav_readers.hpp"
+#include "vectornav_stream.hpp"
 
 namespace coast::io {
 
@@ -47,7 +48,7 @@ record::Events vectornav_file_events(const FrameCensus& census, const std::strin
 bool begins_as_vectornav(std::string_view head) {
   for (std::size_t at = head.find('\xfa'); at != std::string_view::npos; at = head.find('\xfa', at + 1))
     if (try_vectornav(head.substr(at)).verdict == FrameTrial::Verdict::kFrame) return true;
-  return false;
+  return VectorNavRecords::begins_in(head);
 }
 
 }  // namespace coast::io
