@@ -37,17 +37,17 @@ Grid common_grid(const std::vector<ArrayMember>& members, double rate_hz) {
   return grid;
 }
 
-/// Samples at the end of a sensor's range are marked.
-Signals on_grid(const std::vector<ArrayMember>& members, const Grid& grid, const Assembly& assembly) {
-  const std::vector<std::optional<LagCurve>>& lags = assembly.lags;
+LagOfTag lag_of(const std::vector<std::optional<LagCurve>>& lags, std::size_t k, geo::GpsTime start) {
+  if (k >= lags.size() || !lags[k]) return {};
+  return LinearLag{start + lags[k]->reference_s, lags[k]->offset_s, lags[k]->drift_ppm};
+}
+
+Signals on_grid(const std::vector<ArrayMember>& members, const Grid& grid, const std::vector<std::optional<LagCurve>>& lags) {
   Signals signals{grid.start, grid.dt, {}};
   signals.sensors.resize(members.size());
   tbb::parallel_for(std::size_t{0}, members.size(), [&](std::size_t k) {
-    LagOfTag lag;
-    if (k < lags.size() && lags[k]) lag = LinearLag{grid.start + lags[k]->reference_s, lags[k]->offset_s, lags[k]->drift_ppm};
-    signals.sensors[k] = resample(*members[k].recording, grid, lag);
+    signals.sensors[k] = resample(*members[k].recording, grid, lag_of(lags, k, grid.start));
     signals.sensors[k].name = members[k].name;
-    mark_saturation(signals.sensors[k], assembly.saturation[k], *members[k].recording, grid, lag);
   });
   return signals;
 }
@@ -56,9 +56,7 @@ Signals on_grid(const std::vector<ArrayMember>& members, const Grid& grid, const
 void crop_ends(Signals& signals) {
   constexpr double kMost = 2.0;  // s, at either end: if more is missing, it is a dropout
   const auto whole = [&](std::size_t n) {
-    return std::ranges::all_of(signals.sensors, [n](const SensorSignals& sensor) {
-      return (sensor.usable[n] | (sensor.limited.empty() ? 0 : sensor.limited[n])) == kAllUsable;
-    });
+    return std::ranges::all_of(signals.sensors, [n](const SensorSignals& sensor) { return sensor.usable[n] == kAllUsable; });
   };
   const auto most = static_cast<std::size_t>(kMost / signals.dt);
   std::size_t first = 0;
@@ -68,11 +66,8 @@ void crop_ends(Signals& signals) {
   if (first == most || signals.samples() - end == most) return;
   for (SensorSignals& sensor : signals.sensors) {
     sensor.values = sensor.values.middleCols(static_cast<Eigen::Index>(first), static_cast<Eigen::Index>(end - first)).eval();
-    for (std::vector<std::uint8_t>* bits : {&sensor.usable, &sensor.limited}) {
-      if (bits->empty()) continue;
-      bits->erase(bits->begin() + static_cast<std::ptrdiff_t>(end), bits->end());
-      bits->erase(bits->begin(), bits->begin() + static_cast<std::ptrdiff_t>(first));
-    }
+    sensor.usable = std::vector<std::uint8_t>(sensor.usable.begin() + static_cast<std::ptrdiff_t>(first),
+                                              sensor.usable.begin() + static_cast<std::ptrdiff_t>(end));
   }
   signals.start = signals.start + static_cast<double>(first) * signals.dt;
 }
@@ -81,23 +76,31 @@ void say(record::Events& events, record::Event::Severity severity, const char* k
   events.push_back({severity, kind, std::move(text), std::nullopt, 1});
 }
 
-void find_ranges(const std::vector<ArrayMember>& members, Assembly& assembly) {
+/// "imu3: the gyro is at the end of its range, .."
+void tell_range(const std::string& name, const char* triad, std::string most, std::size_t values, record::Events& events) {
+  if (values == 0) return;
+  say(events, record::Event::Severity::kWarning, "saturation",
+      fmt::format("{}: the {} is at the end of its range, {}, in {} values; left out where another is not", name, triad, most,
+                  values));
+}
+
+/// Samples at the end of a sensor's range. Lags and mounting are found with them: what is cut off is the same for all, nearly.
+void leave_out_ends_of_ranges(const std::vector<ArrayMember>& members, geo::GpsTime lags_from, Assembly& assembly) {
+  const Grid grid{assembly.signals.start, assembly.signals.dt, assembly.signals.samples()};
   assembly.saturation.resize(members.size());
-  tbb::parallel_for(std::size_t{0}, members.size(),
-                    [&](std::size_t k) { assembly.saturation[k] = find_saturation(*members[k].recording); });
+  tbb::parallel_for(std::size_t{0}, members.size(), [&](std::size_t k) {
+    assembly.saturation[k] = find_saturation(*members[k].recording);
+    mark_saturation(assembly.signals.sensors[k], assembly.saturation[k], *members[k].recording, grid,
+                    lag_of(assembly.lags, k, lags_from));
+  });
+  use_where_all_are_limited(assembly.signals);
   for (std::size_t k = 0; k < members.size(); ++k) {
     const Saturation& own = assembly.saturation[k];
-    const auto most = [&own](std::size_t first) { return *std::max_element(&own.most[first], &own.most[first] + 3); };
-    const auto samples = [&own](std::size_t first) { return own.count[first] + own.count[first + 1] + own.count[first + 2]; };
-    if (samples(0) > 0)
-      say(assembly.events, record::Event::Severity::kWarning, "saturation",
-          fmt::format("{}: the gyro is at the end of its range, {:.0f} deg/s, in {} values; left out where another is not",
-                      members[k].name, most(0) * 180.0 / std::numbers::pi, samples(0)));
-    if (samples(3) > 0)
-      say(assembly.events, record::Event::Severity::kWarning, "saturation",
-          fmt::format(
-              "{}: the accelerometer is at the end of its range, {:.1f} m/s^2, in {} values; left out where another is not",
-              members[k].name, most(3), samples(3)));
+    tell_range(members[k].name, "gyro",
+               fmt::format("{:.0f} deg/s", std::max({own.most[0], own.most[1], own.most[2]}) * 180.0 / std::numbers::pi),
+               own.count[0] + own.count[1] + own.count[2], assembly.events);
+    tell_range(members[k].name, "accelerometer", fmt::format("{:.1f} m/s^2", std::max({own.most[3], own.most[4], own.most[5]})),
+               own.count[3] + own.count[4] + own.count[5], assembly.events);
   }
 }
 
@@ -154,7 +157,7 @@ void refine_frames(const Signals& sensor_axes, const AssemblyOptions& options, A
 void match_again(const std::vector<ArrayMember>& members, const Grid& grid, const LagOptions& options, Assembly& assembly) {
   record::Events said_already;
   add_remaining(assembly.lags, find_lags(assembly.signals, assembly.frames, options, said_already));
-  assembly.signals = on_grid(members, grid, assembly);
+  assembly.signals = on_grid(members, grid, assembly.lags);
 }
 
 /// Synchronised signals, in their own axes, with refined frames. Times are matched in body axes: an error of the attitude mixes
@@ -163,18 +166,18 @@ void match_again(const std::vector<ArrayMember>& members, const Grid& grid, cons
 void match_and_mount(const std::vector<ArrayMember>& members, const Grid& grid, const AssemblyOptions& options,
                      const std::function<void(const char*, double)>& tell, Assembly& assembly) {
   tell("resampling", 0.0);
-  assembly.signals = on_grid(members, grid, assembly);
+  assembly.signals = on_grid(members, grid, assembly.lags);
   if (options.lags) {
     tell("matching times", 0.1);
     assembly.lags = find_lags(assembly.signals, assembly.frames, *options.lags, assembly.events);
-    assembly.signals = on_grid(members, grid, assembly);
+    assembly.signals = on_grid(members, grid, assembly.lags);
     match_again(members, grid, *options.lags, assembly);
   }
   crop_ends(assembly.signals);
   tell("refining the mounting", 0.3);
   refine_frames(assembly.signals, options, assembly);
   if (!options.lags || !assembly.mounting) return;
-  assembly.signals = on_grid(members, grid, assembly);
+  assembly.signals = on_grid(members, grid, assembly.lags);
   match_again(members, grid, *options.lags, assembly);
   crop_ends(assembly.signals);
   tell("refining the mounting", 0.45);
@@ -205,8 +208,8 @@ Assembly assemble(const std::vector<ArrayMember>& members, const AssemblyOptions
   Assembly assembly;
   assembly.frames = stated_frames(members);
   const Grid grid = common_grid(members, options.rate_hz);
-  find_ranges(members, assembly);
   match_and_mount(members, grid, options, tell, assembly);
+  leave_out_ends_of_ranges(members, grid.start, assembly);
   turn_to_body(assembly.signals, assembly.frames);
   const AngularMotion motion = angular_motion(assembly.signals);
   assembly.differentiator_half_width = motion.half_width;

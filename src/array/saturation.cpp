@@ -92,9 +92,25 @@ Saturation find_saturation(const record::ImuRecording& recording) {
   return saturation;
 }
 
+namespace {
+
+struct ColumnsOf {
+  std::size_t first, end;
+};
+
+/// The columns within `reach` of a sample's interval, which ends at `end` of the grid's time.
+ColumnsOf columns_within(double end, double interval, double reach, const Grid& grid) {
+  const double most = static_cast<double>(grid.samples);
+  return {static_cast<std::size_t>(std::clamp(std::floor((end - interval - reach) / grid.dt), 0.0, most)),
+          static_cast<std::size_t>(std::clamp(std::ceil((end + reach) / grid.dt), 0.0, most))};
+}
+
+}  // namespace
+
 void mark_saturation(SensorSignals& sensor, const Saturation& saturation, const record::ImuRecording& recording,
                      const Grid& grid, const LagOfTag& lag) {
   constexpr double kReach = 16.0;  // intervals of the lower rate, as `resample`
+  constexpr double kWrong = 1.0;
   sensor.limited.clear();
   if (!saturation.any()) return;
   sensor.limited.assign(grid.samples, 0);
@@ -105,13 +121,24 @@ void mark_saturation(SensorSignals& sensor, const Saturation& saturation, const 
     if ((saturation.samples[i] & kForceBits) != 0) bits = static_cast<std::uint8_t>(bits | kForceBits);
     const record::ImuSample& sample = recording.samples[i];
     const double end = (sample.t - grid.start) - (lag ? lag(sample.t) : 0.0);
-    const double reach = kReach * std::max(sample.dt, grid.dt);
-    const double most = static_cast<double>(grid.samples);
-    const auto first = static_cast<std::size_t>(std::clamp(std::floor((end - sample.dt - reach) / grid.dt), 0.0, most));
-    const auto last = static_cast<std::size_t>(std::clamp(std::ceil((end + reach) / grid.dt), 0.0, most));
-    for (std::size_t n = first; n < last; ++n) {
+    const double interval = std::max(sample.dt, grid.dt);
+    const ColumnsOf touched = columns_within(end, sample.dt, kReach * interval, grid);
+    for (std::size_t n = touched.first; n < touched.end; ++n)
       sensor.limited[n] = static_cast<std::uint8_t>(sensor.limited[n] | bits);
+    const ColumnsOf wrong = columns_within(end, sample.dt, kWrong * interval, grid);
+    for (std::size_t n = wrong.first; n < wrong.end; ++n)
       sensor.usable[n] = static_cast<std::uint8_t>(sensor.usable[n] & ~bits);
+  }
+}
+
+void use_where_all_are_limited(Signals& signals) {
+  for (const std::uint8_t kind : {kRateBits, kForceBits}) {
+    for (std::size_t n = 0; n < signals.samples(); ++n) {
+      const auto usable = [&](const SensorSignals& sensor) { return (sensor.usable[n] & kind) != 0; };
+      if (std::ranges::any_of(signals.sensors, usable)) continue;
+      for (SensorSignals& sensor : signals.sensors)
+        if (!sensor.limited.empty())
+          sensor.usable[n] = static_cast<std::uint8_t>(sensor.usable[n] | (sensor.limited[n] & kind));
     }
   }
 }

@@ -67,15 +67,23 @@ TEST(Saturation, IsMarkedAsFarAsTheResamplingReaches) {
     const bool near = n >= 1990 - 16 && n <= 1990 + 16;
     if (near) {
       EXPECT_EQ(sensor.limited[n], 0x07) << n;
-      EXPECT_EQ(sensor.usable[n], 0x38) << n;
     } else if (n + 1 < 1990 - 16 || n > 1990 + 17) {
       EXPECT_EQ(sensor.limited[n], 0) << n;
+    }
+    if (n >= 1989 && n <= 1991) {
+      EXPECT_EQ(sensor.usable[n], 0x38) << n;
+    } else if (n < 1988 || n > 1992) {
       EXPECT_EQ(sensor.usable[n], kAllUsable) << n;
     }
   }
+  Signals all{grid.start, grid.dt, {sensor, sensor}};
+  use_where_all_are_limited(all);
+  EXPECT_EQ(all.sensors[0].usable[1990], kAllUsable);
   Signals signals{grid.start, grid.dt, {sensor, sensor}};
   signals.sensors[1].limited.clear();
   signals.sensors[1].usable.assign(grid.samples, kAllUsable);
+  use_where_all_are_limited(signals);
+  EXPECT_EQ(signals.sensors[0].usable[1990], 0x38);
   mark_forces_moved_by_limited_rates(signals);
   EXPECT_EQ(signals.sensors[0].limited[1990], 0x3F);
   EXPECT_EQ(signals.sensors[1].limited[1990], 0x38);
