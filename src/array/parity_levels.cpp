@@ -118,15 +118,17 @@ TailFit ChannelWindows::tail_fit(std::size_t window) const {
   return fit;
 }
 
-void ChannelWindows::fit_tests(std::vector<LearntTest>& sensors, std::size_t window,
-                               const std::vector<double>& thresholds) const {
+void ChannelWindows::fit_tests(std::vector<LearntTest>& sensors, std::size_t window, const std::vector<double>& thresholds,
+                               const SquareOfRatio& square) const {
   std::vector<LargestRatios> largest;
   std::vector<Growth> growth(sensors_);
   std::vector<TailFit> fits(sensors_, tail_fit(window));
   for (std::size_t k = 0; k < sensors_; ++k) {
-    fits[k].threshold = thresholds[k];
+    fits[k].threshold = square(k, thresholds[k]);
     growth[k].inflation = fit_inflation(sensors[k].ratios);
     largest.push_back(largest_ratios(sensors[k].ratios, growth[k].inflation, fits[k].piece));
+    for (std::vector<double>* ratios : {&largest.back().together, &largest.back().apart})
+      for (double& ratio : *ratios) ratio = square(k, ratio);
     sensors[k].ratios = {};
   }
   fit_tails(largest, fits, growth);
@@ -137,16 +139,21 @@ void ChannelWindows::fit_tests(std::vector<LearntTest>& sensors, std::size_t win
 }
 
 void ChannelWindows::fit_learnt() {
+  const SquareOfRatio as_it_is = [](std::size_t, double ratio) { return ratio; };
   for (std::size_t i = 0; i < kLevelWindows.size(); ++i)
-    fit_tests(level_learnt_[i], kLevelWindows[i], std::vector(sensors_, level_threshold_[i] / kMedianOfOneDegree));
+    fit_tests(level_learnt_[i], kLevelWindows[i], std::vector(sensors_, level_threshold_[i] / kMedianOfOneDegree), as_it_is);
   for (std::size_t i = 0; i < kNoiseWindows.size(); ++i) {
+    const std::size_t blocks = kNoiseWindows[i];
     std::vector<double> thresholds;
-    for (std::size_t k = 0; k < sensors_; ++k)
-      thresholds.push_back(noise_threshold_[i][k] / median_noise_ratio(k, kNoiseWindows[i]));
-    fit_tests(noise_learnt_[i], kNoiseWindows[i], thresholds);
+    for (std::size_t k = 0; k < sensors_; ++k) thresholds.push_back(noise_threshold_[i][k] / median_noise_ratio(k, blocks));
+    fit_tests(noise_learnt_[i], blocks, thresholds, [&](std::size_t k, double ratio) {
+      const double score = NormalScore(dof(k) * static_cast<double>(blocks))(ratio * median_noise_ratio(k, blocks));
+      return score > 0.0 ? score * score : 0.0;
+    });
   }
   for (std::size_t i = 0; i < kMotionWindows.size(); ++i)
-    fit_tests(motion_learnt_[i], kMotionWindows[i], std::vector(sensors_, motion_threshold_[i] / kMedianOfThreeDegrees));
+    fit_tests(motion_learnt_[i], kMotionWindows[i], std::vector(sensors_, motion_threshold_[i] / kMedianOfThreeDegrees),
+              as_it_is);
   start_levels();
   std::fill(run_.begin(), run_.end(), 0);
   std::fill(valid_run_.begin(), valid_run_.end(), 0);

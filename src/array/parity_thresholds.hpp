@@ -61,7 +61,7 @@ struct TailFit {
   double chance = 0.0;     ///< false alarms accepted in a piece
   double threshold = 1.0;  ///< of the ratio, for normal noise
 };
-/// Largest ratios, over the inflation, of pieces of the record.
+/// Largest ratios, over the inflation, of pieces of the record; for `fit_tails` those of squared normals.
 struct LargestRatios {
   std::vector<double> together, apart;
 };

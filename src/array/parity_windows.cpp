@@ -227,10 +227,11 @@ void ChannelWindows::keep_noise_and_motion(std::size_t k, std::size_t since, Tes
     const std::size_t blocks = kNoiseWindows[i];
     const double ratio = noise_ratio(k, blocks, since);
     if (ratio < 0.0) continue;
-    const double s = ratio / noise_learnt_[i][k].factor(mean_of(spread_of_samples_, blocks));
-    const double spread = std::sqrt(2.0 / (9.0 * dof(k) * static_cast<double>(blocks)));
-    const auto normal_score = [spread](double square) { return (std::cbrt(square) - 1.0 + spread * spread) / spread; };
-    keep({TestValue::Kind::kNoise, i, normal_score(s) / normal_score(noise_threshold_[i][k]), normal_score(s), s});
+    const SpreadOfWindow spread = mean_of(spread_of_samples_, blocks);
+    const double s = ratio / noise_learnt_[i][k].growth(spread);
+    const NormalScore score(dof(k) * static_cast<double>(blocks));
+    const double threshold = score(noise_threshold_[i][k]) * std::sqrt(noise_learnt_[i][k].tail(spread));
+    keep({TestValue::Kind::kNoise, i, score(s) / threshold, score(s), s});
   }
   for (std::size_t i = 0; i < kMotionWindows.size(); ++i) {
     const double chi2 = motion_chi2(k, kMotionWindows[i], since);

@@ -3,6 +3,8 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
+#include <functional>
 #include <utility>
 #include <vector>
 
@@ -32,14 +34,24 @@ struct LearntTest {
   std::vector<RatioAtSpread> ratios;  ///< until the growth is known
   Growth own, usual;                  ///< of this sensor; median over all
 
-  /// Factor on the threshold. What a sensor shows beyond all others is a defect of it, also where it lasts for most of the
-  /// record.
-  [[nodiscard]] double factor(const SpreadOfWindow& spread) const {
-    constexpr double kMostGrowth = 1.2;
-    constexpr double kMostTail = 1.5;
-    return std::min(own.inflation.at(spread.now), kMostGrowth * usual.inflation.at(spread.now)) *
-           std::min(own.tail(spread), kMostTail * usual.tail(spread));
+  /// Factors on the squared threshold. What a sensor shows beyond all others is a defect of it, also where it lasts for most of
+  /// the record.
+  [[nodiscard]] double growth(const SpreadOfWindow& spread) const {
+    constexpr double kMost = 1.2;
+    return std::min(own.inflation.at(spread.now), kMost * usual.inflation.at(spread.now));
   }
+  [[nodiscard]] double tail(const SpreadOfWindow& spread) const {
+    constexpr double kMost = 1.5;
+    return std::min(own.tail(spread), kMost * usual.tail(spread));
+  }
+  [[nodiscard]] double factor(const SpreadOfWindow& spread) const { return growth(spread) * tail(spread); }
+};
+
+/// A mean square of nu degrees of freedom over its mean, as a standard normal (Wilson & Hilferty 1931).
+struct NormalScore {
+  explicit NormalScore(double nu) : spread(std::sqrt(2.0 / (9.0 * nu))) {}
+  double operator()(double ratio) const { return (std::cbrt(ratio) - 1.0 + spread * spread) / spread; }
+  double spread;
 };
 
 /// Statistics of one channel's K sensors at a block, against sets of sensors that are in order.
@@ -102,10 +114,13 @@ class ChannelWindows {
   void motion_sums();
   void residuals_of_block(const Set& set, bool again);
   void residual_of_block(std::size_t k, const Set& set, const Eigen::MatrixXd& own, bool again);
+  using SquareOfRatio = std::function<double(std::size_t k, double ratio)>;
   void set_thresholds();
   [[nodiscard]] double median_noise_ratio(std::size_t k, std::size_t blocks) const;
   [[nodiscard]] TailFit tail_fit(std::size_t window) const;
-  void fit_tests(std::vector<LearntTest>& sensors, std::size_t window, const std::vector<double>& thresholds) const;
+  /// @param square  what is a squared normal, of a ratio of sensor k
+  void fit_tests(std::vector<LearntTest>& sensors, std::size_t window, const std::vector<double>& thresholds,
+                 const SquareOfRatio& square) const;
   /// Means over the window.
   [[nodiscard]] SpreadOfWindow mean_of(const SpreadSeries& running_sums, std::size_t window) const {
     const auto mean = [&](const Eigen::VectorXd& sums) {
