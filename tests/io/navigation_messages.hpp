@@ -1,6 +1,7 @@
 #pragma once
 // Navigation messages bit by bit as satellites send them, in the words in which u-blox passes them on.
 
+#include <algorithm>
 #include <array>
 #include <vector>
 
@@ -11,8 +12,9 @@ namespace coast::test {
 /// Bits one after another.
 class BitString {
  public:
+  /// The lowest bits of a number; beyond its 64 those of its sign.
   BitString& put(std::int64_t value, int count) {
-    for (int bit = count - 1; bit >= 0; --bit) bits_.push_back((static_cast<std::uint64_t>(value) >> bit & 1U) != 0);
+    for (int bit = count - 1; bit >= 0; --bit) bits_.push_back((value >> std::min(bit, 63) & 1) != 0);
     return *this;
   }
   /// Sign and magnitude.
