@@ -93,7 +93,10 @@ for array, count in (("xsens-dot-static", 5), ("rc-rover-mimu", 5), ("quadrotor-
             if array != "xsens-dot-static":
                 week = synth["grid"]["gps_week"]
                 entry[method]["drift"] = drift(array, synthetic(folder, week), f"{array}-{method}-{k}-run")
+    own["defects"] = len(synth["defects"])  # of all IMUs of the array; none is known to be defective
     own["lags_ms"] = [1e3 * imu.get("lag", {}).get("offset_s", 0.0) for imu in synth["imus"]]
     if array != "xsens-dot-static":
         own["single"] = {f"{i + 1}": drift(array, single(array, array, i), f"{array}-single-{i + 1}") for i in range(count)}
+_, synth = merged("mimu-array", 8, "mean")
+numbers["mimu-array"] = {"defects": len(synth["defects"])}
 (out / "numbers.json").write_text(json.dumps(numbers, indent=1) + "\n")

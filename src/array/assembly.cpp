@@ -77,7 +77,8 @@ void say(record::Events& events, record::Event::Severity severity, const char* k
 }
 
 /// "imu3: the gyro is at the end of its range, .."
-void tell_range(const std::string& name, const char* triad, std::string most, std::size_t values, record::Events& events) {
+void tell_range(const std::string& name, const char* triad, const std::string& most, std::size_t values,
+                record::Events& events) {
   if (values == 0) return;
   say(events, record::Event::Severity::kWarning, "saturation",
       fmt::format("{}: the {} is at the end of its range, {}, in {} values; left out where another is not", name, triad, most,
@@ -88,12 +89,13 @@ void tell_range(const std::string& name, const char* triad, std::string most, st
 void leave_out_ends_of_ranges(const std::vector<ArrayMember>& members, geo::GpsTime lags_from, Assembly& assembly) {
   const Grid grid{assembly.signals.start, assembly.signals.dt, assembly.signals.samples()};
   assembly.saturation.resize(members.size());
+  std::vector<std::vector<std::uint8_t>> wrong(members.size());
   tbb::parallel_for(std::size_t{0}, members.size(), [&](std::size_t k) {
     assembly.saturation[k] = find_saturation(*members[k].recording);
-    mark_saturation(assembly.signals.sensors[k], assembly.saturation[k], *members[k].recording, grid,
-                    lag_of(assembly.lags, k, lags_from));
+    wrong[k] = mark_saturation(assembly.signals.sensors[k], assembly.saturation[k], *members[k].recording, grid,
+                               lag_of(assembly.lags, k, lags_from));
   });
-  use_where_all_are_limited(assembly.signals);
+  leave_out_where_others_are_not(assembly.signals, wrong);
   for (std::size_t k = 0; k < members.size(); ++k) {
     const Saturation& own = assembly.saturation[k];
     tell_range(members[k].name, "gyro",
@@ -166,7 +168,7 @@ void match_again(const std::vector<ArrayMember>& members, const Grid& grid, cons
 void match_and_mount(const std::vector<ArrayMember>& members, const Grid& grid, const AssemblyOptions& options,
                      const std::function<void(const char*, double)>& tell, Assembly& assembly) {
   tell("resampling", 0.0);
-  assembly.signals = on_grid(members, grid, assembly.lags);
+  assembly.signals = on_grid(members, grid, {});
   if (options.lags) {
     tell("matching times", 0.1);
     assembly.lags = find_lags(assembly.signals, assembly.frames, *options.lags, assembly.events);

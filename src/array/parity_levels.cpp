@@ -77,9 +77,8 @@ void ChannelWindows::move_to(std::size_t k, std::size_t window, const Set& set, 
   }
 }
 
-/// Median of a window's mean square of nu degrees of freedom over its mean (Wilson & Hilferty 1931).
 double ChannelWindows::median_noise_ratio(std::size_t k, std::size_t blocks) const {
-  return std::pow(1.0 - 2.0 / (9.0 * dof(k) * static_cast<double>(blocks)), 3);
+  return median_over_mean(dof(k) * static_cast<double>(blocks));
 }
 
 void ChannelWindows::learn(std::size_t b, const Set& set, const std::vector<std::size_t>& from) {

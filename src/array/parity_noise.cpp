@@ -14,11 +14,6 @@ constexpr double kMadSpread = 1.17;     // sqrt(n) sd(MAD scale)/scale of a norm
 constexpr double kNodeSeconds = 10.0;
 constexpr double kNoBound = 1e100;
 
-/// Median of a mean square of nu degrees of freedom over its mean (Wilson & Hilferty 1931).
-double median_over_mean(double nu) {
-  return std::pow(1.0 - 2.0 / (9.0 * nu), 3);
-}
-
 struct SpanOfBlocks {
   std::size_t from, to;
 };
@@ -40,6 +35,10 @@ Eigen::VectorXd own_variances(const Eigen::VectorXd& of_residuals) {
   if (of_residuals.size() == 2) return Eigen::VectorXd::Constant(2, sum / 2.0);
   const Eigen::ArrayXd own = (of_residuals.array() - sum / (count * count)) / (1.0 - 2.0 / count);
   return own.max(sum / count / 50.0).matrix();
+}
+
+double median_over_mean(double nu) {
+  return std::pow(1.0 - 2.0 / (9.0 * nu), 3);
 }
 
 ChannelNoise::ChannelNoise(const Signals& signals, const ParityBlocks& blocks, int channel, double memory_s)

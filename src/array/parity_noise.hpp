@@ -13,6 +13,9 @@ namespace coast::array {
 /// each at least a fiftieth of their mean. Two sensors get the same variance.
 [[nodiscard]] Eigen::VectorXd own_variances(const Eigen::VectorXd& of_residuals);
 
+/// Median of a mean square of nu degrees of freedom over its mean (Wilson & Hilferty 1931).
+[[nodiscard]] double median_over_mean(double nu);
+
 /// 1e-9 rad/s or m/s^2: sensors that differ by less are considered equal.
 inline constexpr double kLeastVariance = 1e-18;
 

@@ -98,6 +98,10 @@ struct ColumnsOf {
   std::size_t first, end;
 };
 
+void set_bits(std::vector<std::uint8_t>& columns, ColumnsOf span, std::uint8_t bits) {
+  for (std::size_t n = span.first; n < span.end; ++n) columns[n] = static_cast<std::uint8_t>(columns[n] | bits);
+}
+
 /// The columns within `reach` of a sample's interval, which ends at `end` of the grid's time.
 ColumnsOf columns_within(double end, double interval, double reach, const Grid& grid) {
   const double most = static_cast<double>(grid.samples);
@@ -107,13 +111,14 @@ ColumnsOf columns_within(double end, double interval, double reach, const Grid& 
 
 }  // namespace
 
-void mark_saturation(SensorSignals& sensor, const Saturation& saturation, const record::ImuRecording& recording,
-                     const Grid& grid, const LagOfTag& lag) {
+std::vector<std::uint8_t> mark_saturation(SensorSignals& sensor, const Saturation& saturation,
+                                          const record::ImuRecording& recording, const Grid& grid, const LagOfTag& lag) {
   constexpr double kReach = 16.0;  // intervals of the lower rate, as `resample`
   constexpr double kWrong = 1.0;
   sensor.limited.clear();
-  if (!saturation.any()) return;
+  if (!saturation.any()) return {};
   sensor.limited.assign(grid.samples, 0);
+  std::vector<std::uint8_t> wrong(grid.samples, 0);
   for (std::size_t i = 0; i < saturation.samples.size(); ++i) {
     if (saturation.samples[i] == 0) continue;
     std::uint8_t bits = 0;
@@ -122,23 +127,21 @@ void mark_saturation(SensorSignals& sensor, const Saturation& saturation, const 
     const record::ImuSample& sample = recording.samples[i];
     const double end = (sample.t - grid.start) - (lag ? lag(sample.t) : 0.0);
     const double interval = std::max(sample.dt, grid.dt);
-    const ColumnsOf touched = columns_within(end, sample.dt, kReach * interval, grid);
-    for (std::size_t n = touched.first; n < touched.end; ++n)
-      sensor.limited[n] = static_cast<std::uint8_t>(sensor.limited[n] | bits);
-    const ColumnsOf wrong = columns_within(end, sample.dt, kWrong * interval, grid);
-    for (std::size_t n = wrong.first; n < wrong.end; ++n)
-      sensor.usable[n] = static_cast<std::uint8_t>(sensor.usable[n] & ~bits);
+    set_bits(sensor.limited, columns_within(end, sample.dt, kReach * interval, grid), bits);
+    set_bits(wrong, columns_within(end, sample.dt, kWrong * interval, grid), bits);
   }
+  return wrong;
 }
 
-void use_where_all_are_limited(Signals& signals) {
-  for (const std::uint8_t kind : {kRateBits, kForceBits}) {
-    for (std::size_t n = 0; n < signals.samples(); ++n) {
-      const auto usable = [&](const SensorSignals& sensor) { return (sensor.usable[n] & kind) != 0; };
-      if (std::ranges::any_of(signals.sensors, usable)) continue;
-      for (SensorSignals& sensor : signals.sensors)
-        if (!sensor.limited.empty())
-          sensor.usable[n] = static_cast<std::uint8_t>(sensor.usable[n] | (sensor.limited[n] & kind));
+void leave_out_where_others_are_not(Signals& signals, const std::vector<std::vector<std::uint8_t>>& wrong) {
+  for (std::size_t n = 0; n < signals.samples(); ++n) {
+    std::uint8_t right = 0;
+    for (std::size_t k = 0; k < wrong.size(); ++k)
+      right = static_cast<std::uint8_t>(right | (signals.sensors[k].usable[n] & ~(wrong[k].empty() ? 0 : wrong[k][n])));
+    for (std::size_t k = 0; k < wrong.size(); ++k) {
+      if (wrong[k].empty()) continue;
+      std::uint8_t& usable = signals.sensors[k].usable[n];
+      usable = static_cast<std::uint8_t>(usable & ~(wrong[k][n] & right));
     }
   }
 }

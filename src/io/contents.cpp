@@ -14,19 +14,19 @@ class ContentsReader {
  public:
   ContentsReader(const std::filesystem::path& file, std::optional<int> gps_week) : file_(file), gps_week_(gps_week) {}
 
-  FileContents read() {
+  /// @return nothing if no reader found anything
+  std::optional<FileContents> read() {
+    constexpr std::size_t kHead = 4096;
     contents_.source = file_.string();
     if (const auto kind = file_kind(read_head(file_, kHead)); kind && kind->content == FileKind::Content::kRinex)
       read_rinex();
     else
       read_formats();
-    if (!found()) refuse();
-    return std::move(contents_);
+    return found() ? std::optional(std::move(contents_)) : std::nullopt;
   }
+  [[noreturn]] void refuse() const;
 
  private:
-  static constexpr std::size_t kHead = 4096;
-
   /// What `read` returns; if it fails, why is noted.
   template <class Read>
   auto attempt(Read&& read) -> std::optional<decltype(read())> {
@@ -34,6 +34,7 @@ class ContentsReader {
       return read();
     } catch (const InputError& error) {
       contents_.refusals.emplace_back(error.what());
+      if (!first_) first_ = error;
       return std::nullopt;
     }
   }
@@ -88,22 +89,30 @@ class ContentsReader {
            contents_.marks || !contents_.messages.empty();
   }
 
-  [[noreturn]] void refuse() const {
-    refuse_other_kind(file_, FileKind::Content::kRinex, "a recording");
-    if (contents_.refusals.empty())
-      throw InputError({file_.string(), 0, "not recognised", "a recording of an IMU or of GNSS, RINEX, or a trajectory", ""});
-    throw InputError({file_.string(), 0, contents_.refusals.front(), "", ""});
-  }
-
   const std::filesystem::path& file_;
   std::optional<int> gps_week_;
   FileContents contents_;
+  std::optional<InputError> first_;  ///< of the refusals
 };
+
+void ContentsReader::refuse() const {
+  refuse_other_kind(file_, FileKind::Content::kRinex, "a recording");
+  if (first_) throw *first_;
+  throw InputError({file_.string(), 0, "not recognised", "a recording of an IMU or of GNSS, RINEX, or a trajectory", ""});
+}
 
 }  // namespace
 
 FileContents read_contents(const std::filesystem::path& file, std::optional<int> gps_week) {
-  return ContentsReader(file, gps_week).read();
+  ContentsReader reader(file, gps_week);
+  if (auto contents = reader.read()) return std::move(*contents);
+  if (gps_week) reader.refuse();
+  constexpr int kAnyWeek = 2300;
+  ContentsReader with_a_week(file, kAnyWeek);
+  if (with_a_week.read())
+    throw InputError({file.string(), 0, "seconds of week without a GPS week", "the week as well",
+                      "`coast inspect --gps-week 2374 FILE` states it."});
+  with_a_week.refuse();
 }
 
 }  // namespace coast::io

@@ -61,34 +61,41 @@ TEST(Saturation, IsMarkedAsFarAsTheResamplingReaches) {
   saturation.count[0] = 1;
   const Grid grid{geo::GpsTime::from_week(2300, 1000.0), kTurnInterval, 6000};
   SensorSignals sensor;
-  sensor.usable.assign(grid.samples, kAllUsable);
-  mark_saturation(sensor, saturation, recording, grid, LinearLag{grid.start, 0.1, 0.0});  // ten columns earlier
+  const std::vector<std::uint8_t> wrong =
+      mark_saturation(sensor, saturation, recording, grid, LinearLag{grid.start, 0.1, 0.0});  // ten columns earlier
   for (std::size_t n = 0; n < grid.samples; ++n) {
-    const bool near = n >= 1990 - 16 && n <= 1990 + 16;
-    if (near) {
+    if (n >= 1990 - 16 && n <= 1990 + 16) {
       EXPECT_EQ(sensor.limited[n], 0x07) << n;
     } else if (n + 1 < 1990 - 16 || n > 1990 + 17) {
       EXPECT_EQ(sensor.limited[n], 0) << n;
     }
     if (n >= 1989 && n <= 1991) {
-      EXPECT_EQ(sensor.usable[n], 0x38) << n;
+      EXPECT_EQ(wrong[n], 0x07) << n;
     } else if (n < 1988 || n > 1992) {
-      EXPECT_EQ(sensor.usable[n], kAllUsable) << n;
+      EXPECT_EQ(wrong[n], 0) << n;
     }
   }
-  Signals all{grid.start, grid.dt, {sensor, sensor}};
-  use_where_all_are_limited(all);
-  EXPECT_EQ(all.sensors[0].usable[1990], kAllUsable);
-  Signals signals{grid.start, grid.dt, {sensor, sensor}};
-  signals.sensors[1].limited.clear();
-  signals.sensors[1].usable.assign(grid.samples, kAllUsable);
-  use_where_all_are_limited(signals);
-  EXPECT_EQ(signals.sensors[0].usable[1990], 0x38);
+}
+
+TEST(Saturation, IsLeftOutWhereAnotherSensorIsWithinItsRange) {
+  SensorSignals sensor;
+  sensor.usable.assign(4, kAllUsable);
+  Signals signals{geo::GpsTime::from_week(2300, 1000.0), kTurnInterval, {sensor, sensor}};
+  signals.sensors[1].usable[3] = 0;  // a gap
+  leave_out_where_others_are_not(signals, {{0x07, 0x07, 0, 0x07}, {0, 0x07, 0, 0x07}});
+  EXPECT_EQ(signals.sensors[0].usable, (std::vector<std::uint8_t>{0x38, kAllUsable, kAllUsable, kAllUsable}));
+  EXPECT_EQ(signals.sensors[1].usable, (std::vector<std::uint8_t>{kAllUsable, kAllUsable, kAllUsable, 0}));
+}
+
+TEST(Saturation, OfRatesLimitsTheForcesOfAll) {
+  SensorSignals sensor;
+  sensor.usable.assign(2, kAllUsable);
+  Signals signals{geo::GpsTime::from_week(2300, 1000.0), kTurnInterval, {sensor, sensor}};
+  signals.sensors[0].limited = {0x07, 0};
   mark_forces_moved_by_limited_rates(signals);
-  EXPECT_EQ(signals.sensors[0].limited[1990], 0x3F);
-  EXPECT_EQ(signals.sensors[1].limited[1990], 0x38);
-  EXPECT_EQ(signals.sensors[1].limited[100], 0);
-  EXPECT_EQ(signals.sensors[1].usable[1990], kAllUsable);
+  EXPECT_EQ(signals.sensors[0].limited, (std::vector<std::uint8_t>{0x3F, 0}));
+  EXPECT_EQ(signals.sensors[1].limited, (std::vector<std::uint8_t>{0x38, 0}));
+  EXPECT_EQ(signals.sensors[1].usable[0], kAllUsable);
 }
 
 }  // namespace

@@ -184,6 +184,7 @@ TEST(UlogGnss, HasItsFixes) {
   EXPECT_EQ(recording.fixes[1].quality, record::FixQuality::kFixed);
   EXPECT_EQ(recording.fixes[1].t.nanoseconds(), kUlogStart.nanoseconds() + 600'345'000);
   EXPECT_FALSE(recording.fixes[1].velocity);
+  EXPECT_FALSE(files.gnss("flight.ulg", "velocity_sd_mps: [1, 1, 1]").fixes[1].velocity);  // none is stated
   for (const char* kind : {"no_solution", "fix_no_time", "fix_no_accuracy"})
     EXPECT_EQ(test::count_of(recording.events, kind), 1) << kind;
   EXPECT_EQ(files.gnss("flight.ulg", "sd_m: [1, 1, 1]").fixes.size(), 3U);

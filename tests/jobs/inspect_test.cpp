@@ -111,5 +111,23 @@ TEST_F(Inspect, AnythingElseIsRefused) {
   EXPECT_THROW(static_cast<void>(inspect({folder_.path() / "missing", {}}, {})), InputError);
 }
 
+TEST_F(Inspect, AsksForAWeekOnlyWhereThatIsAllThatLacks) {
+  std::string rows = "time_s,gyro_x_radps,gyro_y_radps,gyro_z_radps,accel_x_mps2,accel_y_mps2,accel_z_mps2\n";
+  for (int n = 0; n < 100; ++n) rows += fmt::format("{:.2f},0.001,0.002,{},0.1,0.2,-9.8\n", 1000.0 + 0.01 * n, 1e-4 * n);
+  const auto refused = [&](const std::string& content) -> std::string {
+    try {
+      return text_of("imu.csv", content);
+    } catch (const InputError& error) {
+      return error.what();
+    }
+  };
+  const std::string asked = refused(rows);
+  expect_lines(asked, {"seconds of week without a GPS week", "--gps-week"});
+  EXPECT_EQ(asked.find("imu.csv"), asked.rfind("imu.csv")) << asked;
+  expect_lines(text_of("imu.csv", rows, 2374), {"IMU: 100 samples"});
+  const std::string other = refused("# Notes\n\nIt rained.\n");
+  EXPECT_EQ(other.find("--gps-week"), std::string::npos) << other;
+}
+
 }  // namespace
 }  // namespace coast::jobs

@@ -43,9 +43,9 @@ struct Assembly {
   record::Events events;
 };
 
-/// In this order: resamples, leaves out what is at the end of a sensor's range, estimates and corrects lags, refines the
-/// mounting, repeats both, moves to the body's origin, finds and excludes defective sensors, subtracts offsets. A jump in a
-/// sensor's bias is subtracted.
+/// In this order: resamples, estimates and corrects lags, refines the mounting, repeats both, leaves out what is at the end of
+/// a sensor's range, moves to the body's origin, finds and excludes defective sensors, subtracts offsets. A jump in a sensor's
+/// bias is subtracted.
 /// @param progress  called with the current step and the fraction done
 /// @throws std::invalid_argument  fewer than two members, or recordings that overlap by less than 20 s
 [[nodiscard]] Assembly assemble(const std::vector<ArrayMember>& members, const AssemblyOptions& options,

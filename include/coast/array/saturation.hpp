@@ -30,15 +30,18 @@ struct Saturation {
 [[nodiscard]] Saturation find_saturation(const record::ImuRecording& recording);
 
 /// Marks the columns that a resampled sensor has from samples at the end of its range, for all three axes of the kind (a
-/// rotation mixes them). Within one interval of such a sample they are not usable. They are `limited` as far as the resampling
-/// filter reaches, 16 intervals to both sides: there the error is a small share of what is cut off, which matters where sensors
-/// are compared, and not in what they have in common.
+/// rotation mixes them). They are `limited` as far as the resampling filter reaches, 16 intervals to both sides: there the
+/// error is a small share of what is cut off, which matters where sensors are compared, and not in what they have in common.
 /// @param sensor  the recording resampled to the grid with this lag
-void mark_saturation(SensorSignals& sensor, const Saturation& saturation, const record::ImuRecording& recording,
-                     const Grid& grid, const LagOfTag& lag);
+/// @return per column: bit c is set if row c is within one interval of such a sample, and wrong; empty: none is
+[[nodiscard]] std::vector<std::uint8_t> mark_saturation(SensorSignals& sensor, const Saturation& saturation,
+                                                        const record::ImuRecording& recording, const Grid& grid,
+                                                        const LagOfTag& lag);
 
-/// Where no sensor may be used in a kind because all are at the end of their ranges, all may be: their mean is what there is.
-void use_where_all_are_limited(Signals& signals);
+/// Wrong values are not usable where another sensor has a value of the kind that is not wrong. Where none has, the mean of all
+/// is what there is.
+/// @param wrong  [sensor] by `mark_saturation`
+void leave_out_where_others_are_not(Signals& signals, const std::vector<std::vector<std::uint8_t>>& wrong);
 
 /// Specific forces were moved to the origin by the mean rates: where a sensor's rates are at the end of its range, the forces
 /// of all are `limited`.

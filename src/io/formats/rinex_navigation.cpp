@@ -5,6 +5,7 @@
 #include <cmath>
 #include <iterator>
 
+#include "../counted.hpp"
 #include "../ephemerides.hpp"
 #include "../file_kind.hpp"
 #include "../registry_lookup.hpp"
@@ -276,15 +277,12 @@ void NavigationReader::keep_tabulated(const Message& m) {
 void NavigationReader::report() {
   recording_.events = lines_.events();
   const auto add = [&](long number, const char* kind, const char* what, record::Event::Severity severity) {
-    if (number == 0) return;
-    recording_.events.push_back({severity, kind,
-                                 fmt::format("{}: {} message{} {}", recording_.source, number, number == 1 ? "" : "s", what),
-                                 std::nullopt, number});
+    add_counted(recording_.events, recording_.source, {number}, {kind, "message", "messages", what, severity});
   };
   const auto warning = record::Event::Severity::kWarning;
   const auto info = record::Event::Severity::kInfo;
   add(spoiled_, "navigation_spoiled", "that cannot be read left out", warning);
-  add(impossible_, "navigation_impossible", "with an orbit or a clock that cannot be left out", warning);
+  add(impossible_, "navigation_impossible", "with an impossible orbit or clock left out", warning);
   add(unknown_, "navigation_unknown", "of a kind that is not used", info);
   add(repeated_, "navigation_repeated", "that repeat another left out", info);
 }

@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 
+#include "../counted.hpp"
 #include "../file_kind.hpp"
 #include "../registry_lookup.hpp"
 #include "../rinex_lines.hpp"
@@ -38,15 +39,6 @@ class ObservationReader {
   }
 
  private:
-  /// Repairs and omissions, by kind.
-  struct Count {
-    long number = 0;
-    std::optional<geo::GpsTime> first;
-  };
-  void count(Count& what, std::optional<geo::GpsTime> t) {
-    if (what.number++ == 0) what.first = t;
-  }
-
   void read_header();
   void read_header_line(std::string_view line, std::string_view label);
   void read_slots(std::string_view line);
@@ -73,7 +65,7 @@ class ObservationReader {
   record::ObservationEpoch epoch_;
   std::optional<Satellite> satellite_;
   std::vector<Observation> row_;
-  Count spoiled_, impossible_, repeated_satellites_, unknown_satellites_, repeated_, reversed_, cut_off_, slips_, events_,
+  Counted spoiled_, impossible_, repeated_satellites_, unknown_satellites_, repeated_, reversed_, cut_off_, slips_, events_,
       failures_;
 };
 
@@ -160,12 +152,12 @@ bool ObservationReader::read_epoch() {
   const auto t = calendar ? gps_time(*calendar, scale_) : std::nullopt;
   if (!t) lines_.refuse(in_quotes(line, 29), "a date and a time");
   epoch_ = {*t, {}};
-  if (flag == '1') count(failures_, *t);
+  if (flag == '1') failures_.add(*t);
   std::vector<std::string> ids;
   const bool whole =
       two ? satellites_of_epoch(line, number, ids) && read_records2(ids, flag == '1') : read_records3(number, flag == '1');
   if (!whole) {
-    count(cut_off_, *t);
+    cut_off_.add(*t);
     return false;
   }
   keep_epoch();
@@ -201,7 +193,7 @@ bool ObservationReader::read_records3(std::size_t satellites, bool power_failure
     if (!lines_.next(line)) return false;
     if (!line.empty() && line[0] == '>') {  // fewer satellites than announced
       lines_.put_back();
-      count(spoiled_, epoch_.t);
+      spoiled_.add(epoch_.t);
       return true;
     }
     begin_satellite(satellite_field(field(line, 0, 3), system_));
@@ -216,13 +208,13 @@ bool ObservationReader::read_records3(std::size_t satellites, bool power_failure
 
 /// Flags 2 to 5 announce header lines, 6 cycle slips in the form of observations.
 bool ObservationReader::skip_event(char flag, std::size_t lines) {
-  count(flag == '6' ? slips_ : events_, std::nullopt);
+  (flag == '6' ? slips_ : events_).add();
   constexpr std::size_t kPerLine = 5;
   if (flag == '6' && major_ == 2) lines *= (columns_.of_rinex2() + kPerLine - 1) / kPerLine;
   std::string_view line;
   for (std::size_t i = 0; i < lines; ++i) {
     if (!lines_.next(line)) {
-      count(cut_off_, std::nullopt);
+      cut_off_.add();
       return false;
     }
     if (flag != '6') read_header_line(line, label_of(line));
@@ -233,7 +225,7 @@ bool ObservationReader::skip_event(char flag, std::size_t lines) {
 void ObservationReader::begin_satellite(std::optional<Satellite> satellite) {
   satellite_ = satellite;
   row_.clear();
-  if (!satellite) return count(unknown_satellites_, epoch_.t);
+  if (!satellite) return unknown_satellites_.add(epoch_.t);
   for (const Signal signal : columns_.of(satellite->system).signals) {
     Observation& observation = row_.emplace_back();
     observation.satellite = *satellite;
@@ -247,11 +239,11 @@ void ObservationReader::take(std::string_view line, std::size_t at, std::size_t 
   const ObservationType type = columns_.of(satellite_->system).columns[column];
   if (type.quantity == ' ' || trimmed(field(line, at, kNumber)).empty()) return;
   auto value = number_field(line, at, kNumber);
-  if (!value) return count(spoiled_, epoch_.t);
+  if (!value) return spoiled_.add(epoch_.t);
   *value /= type.factor;
   if (*value == 0.0) return;
   const double largest = type.quantity == 'C' ? 1e9 : type.quantity == 'L' ? 1e11 : type.quantity == 'D' ? 1e6 : 1e3;
-  if (std::abs(*value) > largest || (type.quantity == 'C' && *value < 0.0)) return count(impossible_, epoch_.t);
+  if (std::abs(*value) > largest || (type.quantity == 'C' && *value < 0.0)) return impossible_.add(epoch_.t);
   Observation& observation = row_[type.slot];
   switch (type.quantity) {
     case 'C':
@@ -276,7 +268,7 @@ void ObservationReader::take(std::string_view line, std::size_t at, std::size_t 
 void ObservationReader::end_satellite(bool power_failure) {
   if (!satellite_) return;
   const auto same = [&](const Observation& o) { return o.satellite == *satellite_; };
-  if (std::ranges::any_of(epoch_.observations, same)) return count(repeated_satellites_, epoch_.t);
+  if (std::ranges::any_of(epoch_.observations, same)) return repeated_satellites_.add(epoch_.t);
   for (Observation& observation : row_) {
     if (!observation.code_m && !observation.phase_cycles && !observation.doppler_hz) continue;
     observation.lost_lock = observation.lost_lock || power_failure;
@@ -287,21 +279,17 @@ void ObservationReader::end_satellite(bool power_failure) {
 void ObservationReader::keep_epoch() {
   if (epoch_.observations.empty()) return;
   auto& epochs = recording_.epochs;
-  if (!epochs.empty() && epoch_.t == epochs.back().t) return count(repeated_, epoch_.t);
-  if (!epochs.empty() && epoch_.t < epochs.back().t) return count(reversed_, epoch_.t);
+  if (!epochs.empty() && epoch_.t == epochs.back().t) return repeated_.add(epoch_.t);
+  if (!epochs.empty() && epoch_.t < epochs.back().t) return reversed_.add(epoch_.t);
   std::ranges::stable_sort(epoch_.observations, {}, [](const Observation& o) { return std::pair(o.satellite, o.signal); });
   epochs.push_back(std::move(epoch_));
 }
 
 void ObservationReader::report() {
   recording_.events = lines_.events();
-  const auto add = [&](const Count& what, const char* kind, const char* one, const char* many, const char* done,
+  const auto add = [&](const Counted& counted, const char* kind, const char* one, const char* many, const char* what,
                        record::Event::Severity severity = record::Event::Severity::kWarning) {
-    if (what.number == 0) return;
-    recording_.events.push_back({severity, kind,
-                                 fmt::format("{}: {} {} {}{}", recording_.source, what.number, what.number == 1 ? one : many,
-                                             done, what.first ? "; first at " + geo::to_string(*what.first) : ""),
-                                 what.first, what.number});
+    add_counted(recording_.events, recording_.source, counted, {kind, one, many, what, severity});
   };
   add(spoiled_, "rinex_spoiled", "number or record", "numbers or records", "that cannot be read left out");
   add(impossible_, "rinex_impossible", "number", "numbers", "that no receiver measures left out");

@@ -8,8 +8,7 @@
 
 #include "../binary.hpp"
 #include "../ephemerides.hpp"
-#include "../repairs.hpp"
-#include "coast/geo/earth.hpp"
+#include "../receiver_positions.hpp"
 #include "coast/geo/units.hpp"
 #include "ubx_messages.hpp"
 #include "ubx_readers.hpp"
@@ -32,9 +31,8 @@ struct UbxEpoch {
   };
   std::optional<Solution> solution;
   struct Place {
-    geo::Geodetic p;
-    double horizontal_sd = 0.0;  ///< m, of both components together
-    double vertical_sd = 0.0;    ///< m
+    std::optional<Eigen::Vector3d> r_ea_e;
+    std::optional<Eigen::Matrix3d> cov_n;  ///< by the accuracies of the message
   };
   std::optional<Place> coarse, fine;  ///< NAV-PVT, NAV-HPPOSLLH
   std::optional<Eigen::Matrix3d> position_cov_n, velocity_cov_n;
@@ -65,9 +63,9 @@ void take_pvt(std::string_view b, UbxEpoch& epoch) {
   epoch.t = pvt_time(b);
   if ((byte(78) & 1U) != 0) return;  // position not valid
   constexpr double kUnit = 1e-7 * geo::kDegree;
-  epoch.coarse = {{kUnit * number_at<std::int32_t>(b, 28), kUnit * number_at<std::int32_t>(b, 24), millimetres(b, 32)},
-                  1e-3 * number_at<std::uint32_t>(b, 40),
-                  1e-3 * number_at<std::uint32_t>(b, 44)};
+  epoch.coarse = {
+      ecef_if_on_earth({kUnit * number_at<std::int32_t>(b, 28), kUnit * number_at<std::int32_t>(b, 24), millimetres(b, 32)}),
+      position_covariance(1e-3 * number_at<std::uint32_t>(b, 40), 1e-3 * number_at<std::uint32_t>(b, 44))};
 }
 
 /// Coordinates in two numbers, the second 1e-9 deg and 0.1 mm.
@@ -77,8 +75,8 @@ void take_high_precision(std::string_view b, UbxEpoch& epoch) {
     return geo::kDegree * (1e-7 * number_at<std::int32_t>(b, at) + 1e-9 * number_at<std::int8_t>(b, fine_at));
   };
   const double height = millimetres(b, 16) + 1e-4 * number_at<std::int8_t>(b, 26);
-  epoch.fine = {
-      {angle(12, 25), angle(8, 24), height}, 1e-4 * number_at<std::uint32_t>(b, 28), 1e-4 * number_at<std::uint32_t>(b, 32)};
+  epoch.fine = {ecef_if_on_earth({angle(12, 25), angle(8, 24), height}),
+                position_covariance(1e-4 * number_at<std::uint32_t>(b, 28), 1e-4 * number_at<std::uint32_t>(b, 32))};
 }
 
 /// Upper triangle NN, NE, ND, EE, ED, DD.
@@ -102,44 +100,24 @@ void take_covariances(std::string_view b, UbxEpoch& epoch) {
 class UbxFixReader {
  public:
   UbxFixReader(const GnssFileOptions& options, Format::Near near)
-      : options_(options), stream_(options.file, kUbxLog), known_(near), order_(error_, repairs_) {
+      : stream_(options.file, kUbxLog), known_(near), positions_(options, stream_.name()) {
     if (options.time.gps_week) known_ = geo::GpsTime::from_week(*options.time.gps_week, kHalfWeek);
   }
 
-  record::GnssRecording read() {
-    recording_.source = stream_.name();
-    MessageFrame frame;
-    while (stream_.next(frame)) take(frame);
-    finish_epoch();
-    recording_.events = ubx_file_events(stream_.census(), recording_.source);
-    if (recording_.fixes.empty()) refuse();
-    repairs_.finish(rows_, recording_.events);
-    report();
-    return std::move(recording_);
-  }
+  record::GnssRecording read();
 
  private:
   void take(const MessageFrame& frame);
   void begin_epoch(std::uint32_t tow_ms);
   void finish_epoch();
   [[nodiscard]] std::optional<geo::GpsTime> time_of_epoch() const;
-  [[nodiscard]] Eigen::Matrix3d position_covariance(const UbxEpoch::Place& place) const;
-  void add_velocity(record::GnssFix& fix) const;
-  [[noreturn]] void refuse() const;
-  void report();
 
   static constexpr double kHalfWeek = 302400.0;
-  const GnssFileOptions& options_;
   FrameStream stream_;
   std::optional<geo::GpsTime> known_;  ///< last time that a message states with its week
   UbxEpoch epoch_;
-  Repairs repairs_;
-  WeekClock::MakeError error_ = [this](auto found, auto expected, auto what_to_do) {
-    return InputError({stream_.name(), 0, fmt::format("position {}: {}", rows_, found), expected, what_to_do});
-  };
-  TimeOrder order_;
-  record::GnssRecording recording_;
-  long rows_ = 0, without_ = 0, no_time_ = 0, with_imu_ = 0, no_accuracy_ = 0;
+  ReceiverPositions positions_;
+  Counted with_imu_;
 };
 
 void UbxFixReader::take(const MessageFrame& frame) {
@@ -175,90 +153,43 @@ std::optional<geo::GpsTime> UbxFixReader::time_of_epoch() const {
   return nearest_second_of_week(*known_, 1e-3 * epoch_.tow_ms);
 }
 
-/// The horizontal accuracy is of both components together: a stated 14 mm is 10 mm in each.
-Eigen::Matrix3d UbxFixReader::position_covariance(const UbxEpoch::Place& place) const {
-  if (options_.sd) return options_.sd->cwiseAbs2().asDiagonal();
-  if (epoch_.position_cov_n) return *epoch_.position_cov_n;
-  const double horizontal = 0.5 * place.horizontal_sd * place.horizontal_sd;
-  return Eigen::Vector3d(horizontal, horizontal, place.vertical_sd * place.vertical_sd).asDiagonal();
-}
-
-void UbxFixReader::add_velocity(record::GnssFix& fix) const {
-  constexpr double kFastest = 1e4, kLargestSd = 1e3;  // m/s
-  const UbxEpoch::Solution& s = *epoch_.solution;
-  if (s.velocity_n.norm() > kFastest) return;
-  if (options_.velocity_sd) {
-    fix.velocity = {s.velocity_n, options_.velocity_sd->cwiseAbs2().asDiagonal()};
-  } else if (epoch_.velocity_cov_n) {
-    fix.velocity = {s.velocity_n, *epoch_.velocity_cov_n};
-  } else if (s.speed_sd > 0.0 && s.speed_sd < kLargestSd) {
-    fix.velocity = {s.velocity_n, s.speed_sd * s.speed_sd / 3.0 * Eigen::Matrix3d::Identity()};
-  }
-}
-
 void UbxFixReader::finish_epoch() {
   constexpr int kThreeD = 3, kWithImu = 4;
-  constexpr double kLargestSd = 1e6, kHighestFix = 1e6;  // m
   const std::optional<UbxEpoch::Place>& place = epoch_.fine ? epoch_.fine : epoch_.coarse;
-  if (!place && !epoch_.solution) return;
-  ++rows_;
   const auto& s = epoch_.solution;
-  if (!place || (s && (!s->accepted || (s->kind != kThreeD && s->kind != kWithImu)))) {
-    ++without_;
-    return;
+  if (!place && !s) return;
+  ReceiverPosition position;
+  position.solved = place && (!s || (s->accepted && (s->kind == kThreeD || s->kind == kWithImu)));
+  position.t = time_of_epoch();
+  if (place) {
+    position.r_ea_e = place->r_ea_e;
+    position.position_cov_n = epoch_.position_cov_n ? epoch_.position_cov_n : place->cov_n;
   }
-  const auto t = time_of_epoch();
-  if (!t) {
-    ++no_time_;
-    return;
-  }
-  const bool accuracy = place->horizontal_sd > 0.0 && place->horizontal_sd < kLargestSd && place->vertical_sd > 0.0 &&
-                        place->vertical_sd < kLargestSd;
-  const bool on_earth = std::abs(place->p.latitude) <= 0.5 * geo::kPi && std::abs(place->p.longitude) <= 2.0 * geo::kPi &&
-                        std::abs(place->p.height) < kHighestFix;
-  if (!on_earth || (!accuracy && !options_.sd && !epoch_.position_cov_n)) {
-    ++no_accuracy_;
-    return;
-  }
-  record::GnssFix fix;
-  fix.t = *t + options_.time.offset_s;
-  fix.r_ea_e = geo::ecef_from_geodetic(place->p);
-  fix.position_cov_n = position_covariance(*place);
   if (s) {
-    fix.quality = s->quality;
-    fix.satellites = s->satellites;
-    add_velocity(fix);
-    if (s->kind == kWithImu) ++with_imu_;
+    position.quality = s->quality;
+    position.satellites = s->satellites;
+    position.v_ea_n = s->velocity_n;
+    position.velocity_cov_n = epoch_.velocity_cov_n ? epoch_.velocity_cov_n : velocity_covariance(s->speed_sd);
   }
-  auto& fixes = recording_.fixes;
-  if (order_.accept(fix.t, !fixes.empty() && fixes.back().r_ea_e == fix.r_ea_e)) fixes.push_back(fix);
+  if (positions_.take(position) && s && s->kind == kWithImu) with_imu_.add();
 }
 
-void UbxFixReader::refuse() const {
-  if (rows_ == 0)
-    throw InputError({stream_.name(), 0, "a UBX file without UBX-NAV-PVT and UBX-NAV-HPPOSLLH", "positions",
-                      "If it holds UBX-RXM-RAWX, `gnss: {ppk: {rover: .., base: .., nav: [..]}}` computes them."});
-  throw InputError({stream_.name(), 0,
-                    fmt::format("{} epochs, but no GNSS fix: {} without a three-dimensional solution, {} without a week, {} "
-                                "without accuracies",
-                                rows_, without_, no_time_, no_accuracy_),
-                    "at least one fix", no_time_ > 0 ? "State `gps_week:` beside the file." : ""});
-}
-
-void UbxFixReader::report() {
-  const auto add = [&](long number, const char* kind, const char* text, record::Event::Severity severity) {
-    if (number > 0)
-      recording_.events.push_back(
-          {severity, kind, fmt::format("{}: {} {}", recording_.source, number, text), std::nullopt, number});
-  };
-  using enum record::Event::Severity;
-  add(without_, "no_solution", "epochs without a three-dimensional solution left out", kInfo);
-  add(no_time_, "fix_no_time", "positions before the receiver knew the week left out", kInfo);
-  add(no_accuracy_, "fix_no_accuracy", "positions without accuracy, or not on the Earth, left out", kWarning);
-  add(with_imu_, "fix_with_imu",
-      "positions are of GNSS and the receiver's own IMU together: their errors are correlated over time, and in gaps of GNSS "
-      "they are no measurements",
-      kWarning);
+record::GnssRecording UbxFixReader::read() {
+  MessageFrame frame;
+  while (stream_.next(frame)) take(frame);
+  finish_epoch();
+  record::GnssRecording recording = positions_.finish(
+      ubx_file_events(stream_.census(), stream_.name()),
+      {.positions = {stream_.name(), 0, "a UBX file without UBX-NAV-PVT and UBX-NAV-HPPOSLLH", "positions",
+                     "If it holds UBX-RXM-RAWX, `gnss: {ppk: {rover: .., base: .., nav: [..]}}` computes them."},
+       .for_time = "State `gps_week:` beside the file.",
+       .for_accuracy = "Give `sd_m: [n, e, d]` beside the file."});
+  add_counted(
+      recording.events, recording.source, with_imu_,
+      {"fix_with_imu", "position is", "positions are",
+       "of GNSS and the receiver's own IMU together: their errors are correlated over time, and in gaps of GNSS they are "
+       "no measurements"});
+  return recording;
 }
 
 }  // namespace

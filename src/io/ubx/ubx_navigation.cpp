@@ -9,6 +9,7 @@
 #include "../broadcast/galileo_inav.hpp"
 #include "../broadcast/glonass_strings.hpp"
 #include "../broadcast/gps_lnav.hpp"
+#include "../counted.hpp"
 #include "../ephemerides.hpp"
 #include "ubx_messages.hpp"
 #include "ubx_readers.hpp"
@@ -148,14 +149,12 @@ void SubframeReader::refuse() const {
 void SubframeReader::report() {
   using Grade = record::Event::Severity;
   recording_.events = ubx_file_events(stream_.census(), recording_.source);
-  const auto add = [&](long number, const char* kind, std::string_view text, Grade severity) {
-    if (number == 0) return;
-    recording_.events.push_back(
-        {severity, kind, fmt::format("{}: {} navigation message{} {}", recording_.source, number, number == 1 ? "" : "s", text),
-         std::nullopt, number});
+  const auto add = [&](long number, const char* kind, std::string what, Grade severity) {
+    add_counted(recording_.events, recording_.source, {number},
+                {kind, "navigation message", "navigation messages", std::move(what), severity});
   };
   add(spoiled_, "navigation_spoiled", "with a wrong parity, length or week left out", Grade::kWarning);
-  add(impossible_, "navigation_impossible", "with an orbit or a clock that cannot be left out", Grade::kWarning);
+  add(impossible_, "navigation_impossible", "with an impossible orbit or clock left out", Grade::kWarning);
   for (const auto& [kind, number] : not_decoded_)
     add(number, "navigation_unknown", fmt::format("of {} not used", kind), Grade::kInfo);
 }

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "../binary.hpp"
+#include "../counted.hpp"
 #include "ubx_messages.hpp"
 #include "ubx_readers.hpp"
 #include "ubx_signals.hpp"
@@ -75,14 +76,6 @@ class RawxReader {
   }
 
  private:
-  struct Count {
-    long number = 0;
-    std::optional<geo::GpsTime> first;
-  };
-  static void count(Count& what, std::optional<geo::GpsTime> t) {
-    if (what.number++ == 0) what.first = t;
-  }
-
   void take_version(std::string_view payload);
   void take_epoch(std::string_view payload);
   void take_block(const RawxBlock& block, geo::GpsTime t);
@@ -95,7 +88,7 @@ class RawxReader {
   record::ObservationRecording recording_;
   std::vector<Observation> row_;
   std::map<std::pair<record::Satellite, record::Signal>, SignalLock> locks_;
-  Count spoiled_, no_time_, empty_, unknown_, impossible_, doubled_, repeated_, reversed_, clock_resets_;
+  Counted spoiled_, no_time_, empty_, unknown_, impossible_, doubled_, repeated_, reversed_, clock_resets_;
 };
 
 /// MON-VER: software and hardware version, then extensions of 30 bytes, of which one names the module.
@@ -112,16 +105,16 @@ void RawxReader::take_version(std::string_view payload) {
 
 void RawxReader::take_epoch(std::string_view payload) {
   constexpr unsigned kClockReset = 2;
-  if (payload.size() < kRawxHead) return count(spoiled_, std::nullopt);
+  if (payload.size() < kRawxHead) return spoiled_.add();
   const std::size_t blocks = number_at<std::uint8_t>(payload, 11);
-  if (payload.size() != kRawxHead + blocks * kRawxBlock) return count(spoiled_, std::nullopt);
-  if (blocks == 0) return count(empty_, std::nullopt);
+  if (payload.size() != kRawxHead + blocks * kRawxBlock) return spoiled_.add();
+  if (blocks == 0) return empty_.add();
   const auto t = rawx_time(payload);
-  if (!t) return count(no_time_, std::nullopt);
-  if ((number_at<std::uint8_t>(payload, 12) & kClockReset) != 0) count(clock_resets_, *t);
+  if (!t) return no_time_.add();
+  if ((number_at<std::uint8_t>(payload, 12) & kClockReset) != 0) clock_resets_.add(*t);
   const auto& epochs = recording_.epochs;
-  if (!epochs.empty() && *t == epochs.back().t) return count(repeated_, *t);
-  if (!epochs.empty() && *t < epochs.back().t) return count(reversed_, *t);
+  if (!epochs.empty() && *t == epochs.back().t) return repeated_.add(*t);
+  if (!epochs.empty() && *t < epochs.back().t) return reversed_.add(*t);
   row_.clear();
   for (std::size_t i = 0; i < blocks; ++i) take_block(RawxBlock(payload.substr(kRawxHead + i * kRawxBlock, kRawxBlock)), *t);
   keep_epoch(*t);
@@ -132,16 +125,16 @@ void RawxReader::take_block(const RawxBlock& block, geo::GpsTime t) {
   constexpr double kFarthest = 1e9, kMostCycles = 1e11, kMostHertz = 1e6;
   const auto satellite = ubx_satellite(block.gnss, block.sv);
   const auto signal = satellite ? ubx_signal(satellite->system, block.signal) : std::nullopt;
-  if (!signal) return count(unknown_, t);
+  if (!signal) return unknown_.add(t);
   const auto same = [&](const Observation& o) { return o.satellite == *satellite && o.signal == *signal; };
-  if (std::ranges::any_of(row_, same)) return count(doubled_, t);
+  if (std::ranges::any_of(row_, same)) return doubled_.add(t);
   Observation o;
   o.satellite = *satellite;
   o.signal = *signal;
   // Comparisons that NaN does not pass.
   const bool possible = (!block.code_valid() || (block.code > 0.0 && block.code < kFarthest)) &&
                         (!block.phase_valid() || std::abs(block.phase) < kMostCycles) && std::abs(block.doppler) < kMostHertz;
-  if (!possible) return count(impossible_, t);
+  if (!possible) return impossible_.add(t);
   if (block.code_valid()) o.code_m = block.code;
   if (block.phase_valid()) o.phase_cycles = block.phase;
   o.doppler_hz = block.doppler;
@@ -168,7 +161,7 @@ bool RawxReader::lost_lock(const RawxBlock& block, const Observation& o, geo::Gp
 }
 
 void RawxReader::keep_epoch(geo::GpsTime t) {
-  if (row_.empty()) return count(empty_, t);
+  if (row_.empty()) return empty_.add(t);
   std::ranges::stable_sort(row_, {}, [](const Observation& o) { return std::pair(o.satellite, o.signal); });
   recording_.epochs.push_back({t, row_});
 }
@@ -186,23 +179,21 @@ void RawxReader::refuse() const {
 void RawxReader::report() {
   using Grade = record::Event::Severity;
   recording_.events = ubx_file_events(stream_.census(), recording_.source);
-  const auto add = [&](const Count& what, const char* kind, const char* one, const char* text, Grade severity) {
-    if (what.number == 0) return;
-    recording_.events.push_back(
-        {severity, kind,
-         fmt::format("{}: {} {}{} {}{}", recording_.source, what.number, one, what.number == 1 ? "" : "s", text,
-                     what.first ? "; first at " + geo::to_string(*what.first) : ""),
-         what.first, what.number});
+  const auto add = [&](const Counted& counted, const char* kind, const char* one, const char* many, const char* what,
+                       Grade severity) {
+    add_counted(recording_.events, recording_.source, counted, {kind, one, many, what, severity});
   };
-  add(spoiled_, "rawx_spoiled", "epoch", "whose length contradicts the number of signals left out", Grade::kWarning);
-  add(no_time_, "rawx_no_time", "epoch", "before the receiver knew the week left out", Grade::kInfo);
-  add(empty_, "rawx_empty", "epoch", "without a signal left out", Grade::kInfo);
-  add(unknown_, "rawx_unknown_signal", "measurement", "of an unknown satellite or signal left out", Grade::kInfo);
-  add(impossible_, "rawx_impossible", "measurement", "that no receiver measures left out", Grade::kWarning);
-  add(doubled_, "rawx_repeated_signal", "measurement", "of a signal that the epoch has already left out", Grade::kWarning);
-  add(repeated_, "rawx_repeated_epoch", "epoch", "with the time of the one before left out", Grade::kWarning);
-  add(reversed_, "rawx_reversed_epoch", "epoch", "earlier than the one before left out", Grade::kWarning);
-  add(clock_resets_, "rawx_clock_reset", "reset", "of the receiver's clock", Grade::kInfo);
+  add(spoiled_, "rawx_spoiled", "epoch", "epochs", "whose length contradicts the number of signals left out", Grade::kWarning);
+  add(no_time_, "rawx_no_time", "epoch", "epochs", "before the receiver knew the week left out", Grade::kInfo);
+  add(empty_, "rawx_empty", "epoch", "epochs", "without a signal left out", Grade::kInfo);
+  add(unknown_, "rawx_unknown_signal", "measurement", "measurements", "of an unknown satellite or signal left out",
+      Grade::kInfo);
+  add(impossible_, "rawx_impossible", "measurement", "measurements", "that no receiver measures left out", Grade::kWarning);
+  add(doubled_, "rawx_repeated_signal", "measurement", "measurements", "of a signal that the epoch has already left out",
+      Grade::kWarning);
+  add(repeated_, "rawx_repeated_epoch", "epoch", "epochs", "with the time of the one before left out", Grade::kWarning);
+  add(reversed_, "rawx_reversed_epoch", "epoch", "epochs", "earlier than the one before left out", Grade::kWarning);
+  add(clock_resets_, "rawx_clock_reset", "reset", "resets", "of the receiver's clock", Grade::kInfo);
 }
 
 }  // namespace

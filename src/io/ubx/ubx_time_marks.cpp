@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "../binary.hpp"
+#include "../counted.hpp"
 #include "coast/io/time_marks.hpp"
 #include "coast/record/error.hpp"
 #include "ubx_messages.hpp"
@@ -57,10 +58,8 @@ record::TimeMarkRecording read_time_marks(const std::filesystem::path& file) {
     throw InputError(
         {recording.source, 0, fmt::format("no time mark{}", left_out > 0 ? " with a valid GNSS time" : ""), "UBX-TIM-TM2", ""});
   std::ranges::stable_sort(recording.marks, {}, &record::TimeMark::t);
-  if (left_out > 0)
-    recording.events.push_back({record::Event::Severity::kWarning, "time_mark_invalid",
-                                fmt::format("{}: {} time marks without a valid GNSS time left out", recording.source, left_out),
-                                std::nullopt, left_out});
+  add_counted(recording.events, recording.source, {left_out},
+              {"time_mark_invalid", "time mark", "time marks", "without a valid GNSS time left out"});
   return recording;
 }
 

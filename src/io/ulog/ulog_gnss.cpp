@@ -3,12 +3,10 @@
 
 #include "ulog_gnss.hpp"
 
-#include <fmt/format.h>
-
 #include <cmath>
 #include <cstdlib>
 
-#include "../repairs.hpp"
+#include "../receiver_positions.hpp"
 #include "coast/geo/units.hpp"
 #include "ulog_readers.hpp"
 
@@ -66,7 +64,7 @@ std::optional<UlogPosition> position_of(const UlogRow& row) {
   p.satellites = static_cast<int>(row.integer("satellites_used").value_or(0));
   const auto north = row.number("vel_n_m_s"), east = row.number("vel_e_m_s"), down = row.number("vel_d_m_s");
   if (!north || !east || !down || row.number("vel_ned_valid").value_or(1.0) == 0.0) return p;
-  p.velocity_n = {*north, *east, *down};
+  p.velocity_n = Eigen::Vector3d(*north, *east, *down);
   p.speed_sd = row.number("s_variance_m_s").value_or(0.0);  // a standard deviation by its unit and its use
   return p;
 }
@@ -87,80 +85,19 @@ std::optional<record::FixQuality> ulog_quality(int fix_type) {
   }
 }
 
-class UlogFixes {
- public:
-  UlogFixes(const GnssFileOptions& options, const std::string& source)
-      : options_(options), source_(source), order_(error_, repairs_) {}
-
-  void take(const UlogPosition& p) {
-    constexpr double kLargestSd = 1e6, kHighestFix = 1e6;  // m
-    ++rows_;
-    const auto quality = ulog_quality(p.fix_type);
-    if (!quality) return count(without_);
-    if (!p.t) return count(no_time_);
-    const bool accuracy =
-        p.horizontal_sd > 0.0 && p.horizontal_sd < kLargestSd && p.vertical_sd > 0.0 && p.vertical_sd < kLargestSd;
-    const bool on_earth = std::abs(p.place.latitude) <= 0.5 * geo::kPi && std::abs(p.place.longitude) <= 2.0 * geo::kPi &&
-                          std::abs(p.place.height) < kHighestFix;
-    if (!on_earth || (!accuracy && !options_.sd)) return count(no_accuracy_);
-    record::GnssFix fix;
-    fix.t = *p.t + options_.time.offset_s;
-    fix.r_ea_e = geo::ecef_from_geodetic(p.place);
-    const double horizontal = p.horizontal_sd / std::sqrt(2.0);
-    const Eigen::Vector3d sd = options_.sd.value_or(Eigen::Vector3d(horizontal, horizontal, p.vertical_sd));
-    fix.position_cov_n = sd.cwiseAbs2().asDiagonal();
-    fix.quality = *quality;
-    fix.satellites = p.satellites;
-    add_velocity(p, fix);
-    auto& fixes = recording_.fixes;
-    if (order_.accept(fix.t, !fixes.empty() && fixes.back().r_ea_e == fix.r_ea_e)) fixes.push_back(fix);
-  }
-
-  record::GnssRecording finish(record::Events events) {
-    if (recording_.fixes.empty()) refuse();
-    recording_.source = source_;
-    recording_.events = std::move(events);
-    repairs_.finish(rows_, recording_.events);
-    const auto add = [&](long number, const char* kind, const char* text, record::Event::Severity severity) {
-      if (number > 0)
-        recording_.events.push_back({severity, kind, fmt::format("{}: {} {}", source_, number, text), std::nullopt, number});
-    };
-    using enum record::Event::Severity;
-    add(without_, "no_solution", "epochs without a three-dimensional solution left out", kInfo);
-    add(no_time_, "fix_no_time", "positions before the receiver knew UTC left out", kInfo);
-    add(no_accuracy_, "fix_no_accuracy", "positions without accuracy, or not on the Earth, left out", kWarning);
-    return std::move(recording_);
-  }
-
- private:
-  static void count(long& what) { ++what; }
-  void add_velocity(const UlogPosition& p, record::GnssFix& fix) const {
-    constexpr double kFastest = 1e4, kLargestSd = 1e3;  // m/s
-    if (!(p.velocity_n.norm() < kFastest)) return;
-    if (options_.velocity_sd)
-      fix.velocity = {p.velocity_n, options_.velocity_sd->cwiseAbs2().asDiagonal()};
-    else if (p.speed_sd > 0.0 && p.speed_sd < kLargestSd)
-      fix.velocity = {p.velocity_n, p.speed_sd * p.speed_sd / 3.0 * Eigen::Matrix3d::Identity()};
-  }
-  [[noreturn]] void refuse() const {
-    if (rows_ == 0) throw InputError({source_, 0, "a flight log without positions", "vehicle_gps_position or sensor_gps", ""});
-    throw InputError({source_, 0,
-                      fmt::format("{} positions, but no GNSS fix: {} without a three-dimensional solution, {} without UTC, {} "
-                                  "without accuracy",
-                                  rows_, without_, no_time_, no_accuracy_),
-                      "at least one fix", ""});
-  }
-
-  const GnssFileOptions& options_;
-  const std::string& source_;
-  Repairs repairs_;
-  WeekClock::MakeError error_ = [this](auto found, auto expected, auto what_to_do) {
-    return InputError({source_, 0, fmt::format("position {}: {}", rows_, found), expected, what_to_do});
-  };
-  TimeOrder order_;
-  record::GnssRecording recording_;
-  long rows_ = 0, without_ = 0, no_time_ = 0, no_accuracy_ = 0;
-};
+ReceiverPosition stated_by(const UlogPosition& p) {
+  const auto quality = ulog_quality(p.fix_type);
+  ReceiverPosition position;
+  position.t = p.t;
+  position.solved = quality.has_value();
+  position.r_ea_e = ecef_if_on_earth(p.place);
+  position.position_cov_n = position_covariance(p.horizontal_sd, p.vertical_sd);
+  position.v_ea_n = p.velocity_n;
+  position.velocity_cov_n = velocity_covariance(p.speed_sd);
+  position.quality = quality.value_or(record::FixQuality::kUnknown);
+  position.satellites = p.satellites;
+  return position;
+}
 
 }  // namespace
 
@@ -170,9 +107,9 @@ void UlogPositions::take(const UlogData& data) {
   if (const auto p = position_of(UlogRow(data))) receivers_[{of_sensor, data.topic->instance}].push_back(*p);
 }
 
-const std::vector<UlogPosition>& UlogPositions::best() const {
-  static const std::vector<UlogPosition> none;
-  return receivers_.empty() ? none : receivers_.begin()->second;
+std::span<const UlogPosition> UlogPositions::best() const {
+  if (receivers_.empty()) return {};
+  return receivers_.begin()->second;
 }
 
 record::GnssRecording read_ulog_gnss(const GnssFileOptions& options, Format::Near) {
@@ -180,9 +117,12 @@ record::GnssRecording read_ulog_gnss(const GnssFileOptions& options, Format::Nea
   UlogPositions positions;
   UlogData data;
   while (stream.next(data)) positions.take(data);
-  UlogFixes fixes(options, stream.name());
-  for (const UlogPosition& p : positions.best()) fixes.take(p);
-  return fixes.finish(stream.events());
+  ReceiverPositions fixes(options, stream.name());
+  for (const UlogPosition& p : positions.best()) fixes.take(stated_by(p));
+  return fixes.finish(stream.events(), {.positions = {stream.name(), 0, "a flight log without positions",
+                                                      "vehicle_gps_position or sensor_gps", ""},
+                                        .for_time = "",
+                                        .for_accuracy = "Give `sd_m: [n, e, d]` beside the file."});
 }
 
 }  // namespace coast::io

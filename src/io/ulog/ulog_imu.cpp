@@ -6,6 +6,7 @@
 #include <algorithm>
 
 #include "../clock_tie.hpp"
+#include "../counted.hpp"
 #include "../imu_builder.hpp"
 #include "../repairs.hpp"
 #include "ulog_gnss.hpp"
@@ -162,12 +163,8 @@ record::ImuRecording read_ulog_imu(const ImuFileOptions& options, Format::Near) 
   }
   recording.events = stream.events();
   repairs.finish(row, recording.events);
-  if (not_finite > 0)
-    recording.events.push_back(
-        {record::Event::Severity::kWarning, "nan_row",
-         fmt::format("{}: {} IMU samples with a value that is not finite, or an impossible time, left out", stream.name(),
-                     not_finite),
-         std::nullopt, not_finite});
+  add_counted(recording.events, stream.name(), {not_finite},
+              {"nan_row", "IMU sample", "IMU samples", "with a value that is not finite, or an impossible time, left out"});
   recording.events.push_back(
       {record::Event::Severity::kInfo, "imu_clock_tied",
        fmt::format(

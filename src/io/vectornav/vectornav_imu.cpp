@@ -5,6 +5,7 @@
 
 #include <cmath>
 
+#include "../counted.hpp"
 #include "../imu_builder.hpp"
 #include "../repairs.hpp"
 #include "coast/geo/units.hpp"
@@ -103,17 +104,15 @@ class VectorNavImuReader {
     if (recording_.temperature.size() != recording_.samples.size()) recording_.temperature.clear();
     recording_.events = vectornav_file_events(stream_.census(), recording_.source);
     repairs_.finish(rows_, recording_.events);
-    const auto add = [&](long number, const char* kind, std::string_view text, record::Event::Severity severity) {
-      if (number > 0)
-        recording_.events.push_back(
-            {severity, kind, fmt::format("{}: {} {}", recording_.source, number, text), std::nullopt, number});
+    const auto add = [&](long number, const char* kind, const char* what, record::Event::Severity severity) {
+      add_counted(recording_.events, recording_.source, {number}, {kind, "IMU sample", "IMU samples", what, severity});
     };
     using enum record::Event::Severity;
-    add(no_time_, "imu_no_time", "IMU samples before the sensor knew GPS time left out", kInfo);
-    add(not_finite_, "nan_row", "IMU samples with a value that is not finite left out", kWarning);
+    add(no_time_, "imu_no_time", "before the sensor knew GPS time left out", kInfo);
+    add(not_finite_, "nan_row", "with a value that is not finite left out", kWarning);
     if (source_ == VectorNavSource::kCompensated)
       add(static_cast<long>(recording_.samples.size()), "imu_compensated",
-          "IMU samples are without the biases that the sensor's own filter has found, and change with them: let it write "
+          "without the biases that the sensor's own filter has found, which change with it: let it write "
           "DeltaTheta and DeltaVel, or UncompGyro and UncompAccel",
           kWarning);
     finish_imu(recording_, source_ == VectorNavSource::kIncrements, options_.time_tag);

@@ -26,6 +26,11 @@ std::string sent_head(std::string_view head) {
   return groups == 0 ? std::string() : static_cast<char>(groups) + masks;
 }
 
+bool holds_records(const std::filesystem::path& file) {
+  constexpr std::size_t kEnough = 4096;
+  return VectorNavRecords::begins_in(ByteWindow(file).ahead(kEnough));
+}
+
 bool possible_time(std::string_view record) {
   constexpr std::uint32_t kMostCycles = 8, kWeeks = 1024;
   constexpr double kWeek = 604800.0;
@@ -78,8 +83,7 @@ bool VectorNavRecords::give_up(std::size_t bytes) {
 }
 
 VectorNavStream::VectorNavStream(const std::filesystem::path& file) : frames_(file, kVectorNavLog) {
-  constexpr std::size_t kEnough = 4096;
-  if (VectorNavRecords::begins_in(ByteWindow(file).ahead(kEnough))) records_.emplace(file);
+  if (holds_records(file)) records_.emplace(file);
 }
 
 bool VectorNavStream::next(VectorNavMessage& message) {
@@ -91,7 +95,7 @@ bool VectorNavStream::next(VectorNavMessage& message) {
 }
 
 std::vector<MessageCount> count_vectornav_messages(const std::filesystem::path& file) {
-  if (!VectorNavRecords::begins_in(ByteWindow(file).ahead(4096))) return count_frames(file, kVectorNavLog);
+  if (!holds_records(file)) return count_frames(file, kVectorNavLog);
   VectorNavRecords records(file);
   VectorNavMessage message;
   long number = 0;
