@@ -125,6 +125,33 @@ BlockVariances block_variances(const Signals& signals, const Eigen::MatrixXd& y,
   return result;
 }
 
+/// Sum of the known (not negative) values of a row or column over that of their weights; 1 if none is known.
+template <class Values, class Weights>
+double known_over(const Values& values, const Weights& weights) {
+  double sum = 0.0, weight = 0.0;
+  for (Eigen::Index i = 0; i < values.size(); ++i) {
+    if (values(i) < 0.0) continue;
+    sum += values(i);
+    weight += weights(i);
+  }
+  return weight > 0.0 ? sum / weight : 1.0;
+}
+
+/// A variance that is not known (negative) is the size of its sensor times the level of its block. Both follow from the known
+/// ones, each in turn: a sensor that is missing while all are shaken is not thought quiet.
+void fill_missing(Eigen::MatrixXd& variance) {
+  constexpr int kRounds = 20;
+  if ((variance.array() >= 0.0).all()) return;
+  Eigen::VectorXd size(variance.rows()), level = Eigen::VectorXd::Ones(variance.cols());
+  for (int round = 0; round < kRounds; ++round) {
+    for (Eigen::Index k = 0; k < variance.rows(); ++k) size(k) = known_over(variance.row(k), level);
+    for (Eigen::Index b = 0; b < variance.cols(); ++b) level(b) = known_over(variance.col(b), size);
+  }
+  for (Eigen::Index b = 0; b < variance.cols(); ++b)
+    for (Eigen::Index k = 0; k < variance.rows(); ++k)
+      if (variance(k, b) < 0.0) variance(k, b) = size(k) * level(b);
+}
+
 }  // namespace
 
 std::vector<double> own_variances(std::span<const double> residual_variances) {
@@ -183,12 +210,7 @@ NoiseOverTime noise_over_time(const Signals& signals, int channel, double window
     for (std::size_t i = 0; i < own.size(); ++i)
       noise.variance(static_cast<Eigen::Index>(found.sensors[i]), static_cast<Eigen::Index>(b)) = own[i];
   }
-  for (Eigen::Index k = 0; k < y.rows(); ++k) {
-    const auto known = (noise.variance.row(k).array() >= 0.0).eval();
-    const double mean =
-        known.any() ? known.select(noise.variance.row(k).array(), 0.0).sum() / static_cast<double>(known.count()) : 1.0;
-    noise.variance.row(k) = known.select(noise.variance.row(k).array(), mean);
-  }
+  fill_missing(noise.variance);
   return noise;
 }
 

@@ -68,5 +68,15 @@ TEST(NoiseOverTime, FollowsEachSensorsOwn) {
   EXPECT_NEAR(sd.row(3).mean(), 0.04, 0.0008);
 }
 
+TEST(NoiseOverTime, OfASensorThatIsMissingWhileAllAreShakenIsTheirs) {
+  Signals signals = noisy_array({0.01, 0.02, 0.01, 0.02}, 60000, 9);
+  for (SensorSignals& sensor : signals.sensors) sensor.values.rightCols(30000) *= 5.0;
+  std::fill(signals.sensors[1].usable.begin() + 30000, signals.sensors[1].usable.end(), std::uint8_t{0});
+  const NoiseOverTime noise = noise_over_time(signals, 2, 10.0);
+  // As above: thirty blocks know a mean to 2 %, of which the size and the level each take part.
+  EXPECT_NEAR(std::sqrt(noise.variance.row(1).tail(30).mean()), 0.1, 0.006);
+  EXPECT_NEAR(std::sqrt(noise.variance.row(1).head(30).mean()), 0.02, 0.0004);
+}
+
 }  // namespace
 }  // namespace coast::array

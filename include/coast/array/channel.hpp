@@ -33,8 +33,9 @@ std::vector<Eigen::Matrix<double, kChannels, Eigen::Dynamic>> take_off_relative_
 /// Noise of one channel over time.
 struct NoiseOverTime {
   std::size_t block = 0;  ///< samples per column; the last one may have more
-  Eigen::MatrixXd
-      variance;  ///< K x blocks, each sensor's own, of one sample; where a sensor is not usable: its mean over the other blocks
+  /// K x blocks, each sensor's own, of one sample. Where a sensor is not usable: its size relative to the others, times their
+  /// noise in the block.
+  Eigen::MatrixXd variance;
 };
 /// Sample variances of the residuals in blocks of `window_s`, solved for the own variances of the sensors that are usable in at
 /// least half of the block.
