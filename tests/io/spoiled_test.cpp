@@ -305,7 +305,7 @@ std::vector<Spoiled> receiver_files() {
       {"ULog without anything", Kind::kImu, ulog_head, "", "%: a flight log with 0 IMU samples"},
       {"ULog without positions", Kind::kGnss, ulog_head, "", "%: a flight log without positions"},
       {"ULog cut in its header", Kind::kImu, ulog_head.substr(0, 12), "", "%: the header is cut off"},
-      {"text as ULog", Kind::kImu, imu_csv(), "format: ulog", "%: no \"ULog\" at its begin"},
+      {"text as ULog", Kind::kImu, imu_csv(), "format: ulog", "%: no \"ULog\" at its beginning"},
   };
 }
 

@@ -25,7 +25,7 @@ bool begins_as_ulog(std::string_view head) {
 UlogStream::UlogStream(const std::filesystem::path& file) : window_(file) {
   const std::string_view head = window_.ahead(kUlogHead);
   if (!begins_as_ulog(head))
-    throw InputError({name(), 0, "no \"ULog\" at its begin", "a ULog file of PX4", "Is this the right file?"});
+    throw InputError({name(), 0, "no \"ULog\" at its beginning", "a ULog file of PX4", "Is this the right file?"});
   constexpr int kLatest = 1;
   if (head.size() < kUlogHead) throw InputError({name(), 0, "the header is cut off", "16 bytes", ""});
   if (head[7] < 0 || head[7] > kLatest)

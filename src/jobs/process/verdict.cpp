@@ -47,7 +47,10 @@ std::string Judgement::line() const {
     text += separator + check.text;
     separator = "; ";
   }
-  return likely_cause.empty() ? text : fmt::format("{}. Most likely cause: {}", text, likely_cause);
+  if (likely_cause.empty()) return text;
+  std::string_view cause = likely_cause;  // a sentence; what uses this line ends it itself
+  if (cause.ends_with('.')) cause.remove_suffix(1);
+  return fmt::format("{}. Most likely cause: {}", text, cause);
 }
 
 namespace {
