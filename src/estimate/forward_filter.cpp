@@ -24,8 +24,9 @@ ins::RawIncrement increment_from(const record::ImuRecording& imu, std::size_t in
 
 namespace {
 
-AuxiliaryStates with_slots(AuxiliaryStates auxiliary, const CarrierObservations* carrier) {
-  if (carrier != nullptr) auxiliary.carrier_slots = static_cast<int>(carrier->most_unknowns);
+AuxiliaryStates with_those_of(const Mission& mission, AuxiliaryStates auxiliary) {
+  if (mission.carrier != nullptr) auxiliary.carrier_slots = static_cast<int>(mission.carrier->most_unknowns);
+  for (const AidStream& stream : mission.aids) auxiliary.aids.push_back({stream.name, stream.aid->states()});
   return auxiliary;
 }
 
@@ -49,7 +50,7 @@ void check_members(const record::MemberBlocks& recorded, const StateLayout& layo
 }  // namespace
 
 ForwardFilter::ForwardFilter(const Mission& mission, const noise::ImuErrorModel& model, const FilterOptions& options)
-    : mission_(mission), options_(options), layout_(model, mission.C_s_b, with_slots(options.auxiliary, mission.carrier)) {
+    : mission_(mission), options_(options), layout_(model, mission.C_s_b, with_those_of(mission, options.auxiliary)) {
   if (!(options.knot_interval_s > 0.0)) throw std::invalid_argument("FilterOptions::knot_interval_s must be above zero");
   check_members(mission.imu.members, layout_);
   // A restart within an outage uses data that the outage withholds.

@@ -29,7 +29,9 @@ ForwardPass::ForwardPass(const Mission& mission, const StateLayout& layout, cons
       outputs_(outputs),
       knot_interval_(knot_interval),
       propagation_(mission, layout),
-      member_counts_(layout.members().size()) {
+      next_aid_(mission.aids.size(), 0),
+      member_counts_(layout.members().size()),
+      aid_counts_(mission.aids.size()) {
   if (mission.carrier != nullptr) tight_.emplace(*mission.carrier, layout, mission.earth_rate < 0.0);
   gate_.fill(std::numeric_limits<double>::infinity());
   if (options.gate_probability > 0.0)
@@ -78,6 +80,11 @@ void ForwardPass::skip_measurements(geo::GpsTime before) {
   while (next_fix_ < gnss_epochs() && gnss_time(next_fix_) < before) ++next_fix_;
   const std::vector<record::MemberBlocks::Block>& blocks = member_blocks();
   while (next_block_ < blocks.size() && middle(blocks[next_block_]) < before) ++next_block_;
+  for (std::size_t a = 0; a < next_aid_.size(); ++a) {
+    const std::vector<record::AidSample>& samples = *mission_.aids[a].samples;
+    next_aid_[a] =
+        static_cast<std::size_t>(std::ranges::lower_bound(samples, before, {}, &record::AidSample::t) - samples.begin());
+  }
   while (next_stop_ < options_.knots_at.size() && options_.knots_at[next_stop_] < before) ++next_stop_;
   while (next_restart_ < mission_.restarts.size() && mission_.restarts[next_restart_].nav.t < before) ++next_restart_;
 }
@@ -96,9 +103,15 @@ geo::GpsTime ForwardPass::next_knot_time(geo::GpsTime end) const {
   if (next_fix_ < gnss_epochs()) t = std::min(t, gnss_time(next_fix_));
   const std::vector<record::MemberBlocks::Block>& blocks = member_blocks();
   if (next_block_ < blocks.size()) t = std::min(t, middle(blocks[next_block_]));
+  for (std::size_t a = 0; a < next_aid_.size(); ++a)
+    if (next_aid_[a] < mission_.aids[a].samples->size()) t = std::min(t, aid_time(a));
   if (next_stop_ < options_.knots_at.size()) t = std::min(t, options_.knots_at[next_stop_]);
   if (next_restart_ < mission_.restarts.size()) t = std::min(t, mission_.restarts[next_restart_].nav.t);
   return t;
+}
+
+geo::GpsTime ForwardPass::aid_time(std::size_t aid) const {
+  return (*mission_.aids[aid].samples)[next_aid_[aid]].t;
 }
 
 void ForwardPass::advance(geo::GpsTime end) {
@@ -144,14 +157,17 @@ void ForwardPass::knot() {
   knot_.slot_factors.resize(0);
   if (outputs_.at_knots) outputs_.at_knots(state_);
   C_n_e_ = geo::C_n_e(geo::geodetic_from_ecef(state_.nav.r_eb_e));  // updates move the point by metres, this by 1e-6
+  hold_heading();
   while (next_fix_ < gnss_epochs() && gnss_time(next_fix_) - state_.nav.t <= kTimeTolerance) take_gnss(next_fix_++);
   const std::vector<record::MemberBlocks::Block>& blocks = member_blocks();
   while (next_block_ < blocks.size() && middle(blocks[next_block_]) - state_.nav.t <= kTimeTolerance)
     member_updates(next_block_++);
+  aid_updates();
   while (next_stop_ < options_.knots_at.size() && options_.knots_at[next_stop_] - state_.nav.t <= kTimeTolerance) ++next_stop_;
   while (next_restart_ < mission_.restarts.size() && mission_.restarts[next_restart_].nav.t - state_.nav.t <= kTimeTolerance)
     ++next_restart_;
   vehicle_updates();
+  standing_ = stands_still() ? std::optional(state_.nav) : std::nullopt;
   propagation_.correct(state_.nav, state_.x);
   if (outputs_.epochs) cov_at_start_ = nav_covariance_n(state_.P.topLeftCorner<kNav, kNav>(), state_.nav.r_eb_e);
   if (!keeps_knots()) return;
@@ -168,6 +184,7 @@ FilterResult ForwardPass::finish() {
   if (keeps_knots()) deliver_knot();
   if (outputs_.progress) outputs_.progress(1.0);
   note_refused_members();
+  note_refused_aids();
   result_.last = state_;
   return std::move(result_);
 }

@@ -34,9 +34,16 @@ class ForwardPass {
   void vehicle_updates();
   [[nodiscard]] const std::vector<record::MemberBlocks::Block>& member_blocks() const;
   void member_updates(std::size_t index);
+  void aid_updates();
+  [[nodiscard]] geo::GpsTime aid_time(std::size_t aid) const;
+  void hold_heading();
+  [[nodiscard]] bool stands_still() const;
   void note_refused_members();
+  void note_refused_aids();
   /// @return whether it was used; none if it does not apply
   std::optional<bool> try_update(const Measurement& measurement, record::FixQuality quality = record::FixQuality::kUnknown);
+  /// Uses or rejects a measurement.
+  bool take(const Measurement& what, const Linearised& measurement, record::FixQuality quality);
   [[nodiscard]] bool gate_refuses(const Linearised& measurement, double nis);
   /// Antenna position from single-receiver code, minus that of the filter.
   [[nodiscard]] std::optional<Eigen::Vector3d> seen_alone(const carrier::DifferenceEpoch& epoch,
@@ -46,7 +53,8 @@ class ForwardPass {
   void note_opened(const Eigen::Vector3d& nu_n);
   [[nodiscard]] bool coasting() const;
   void admit_doubt(const Eigen::Vector3d& nu);
-  void record_innovation(const Linearised& measurement, const Innovation& innovation, bool used, record::FixQuality quality);
+  void record_innovation(const Measurement& what, const Linearised& measurement, const Innovation& innovation, bool used,
+                         record::FixQuality quality);
   void emit_epochs(const record::NavCovariance& at_end);
   /// Delivers the last knot, now complete, to the outputs.
   void deliver_knot();
@@ -71,12 +79,15 @@ class ForwardPass {
   std::size_t next_fix_ = 0;
   std::size_t next_stop_ = 0;  ///< index in options_.knots_at
   std::size_t next_restart_ = 0;
-  std::size_t next_block_ = 0;  ///< index in the members' blocks
-  struct MemberCount {
+  std::size_t next_block_ = 0;         ///< index in the members' blocks
+  std::vector<std::size_t> next_aid_;  ///< index in the samples of each aid
+  struct Count {
     std::size_t met = 0;
     std::size_t refused = 0;
   };
-  std::vector<MemberCount> member_counts_;  ///< for the differences of each member
+  std::vector<Count> member_counts_;          ///< for the differences of each member
+  std::vector<Count> aid_counts_;             ///< for the samples of each aid
+  std::optional<record::NavState> standing_;  ///< at the last knot after its updates, if it was in a standstill
   std::optional<TightCoupling> tight_;
   geo::GpsTime last_constraint_;
   geo::GpsTime first_refused_;

@@ -78,11 +78,54 @@ void ForwardPass::vehicle_updates() {
   if (!vehicle.non_holonomic && !vehicle.zero_velocity_sd_mps) return;
   if (state_.nav.t - last_constraint_ < vehicle.interval_s - kTimeTolerance) return;
   last_constraint_ = state_.nav.t;
-  bool standing = false;
-  for (const TimeSpan& span : mission_.standstill) standing = standing || span.contains(state_.nav.t);
+  const bool standing =
+      std::ranges::any_of(mission_.standstill, [t = state_.nav.t](const TimeSpan& s) { return s.contains(t); });
   if (standing && vehicle.zero_velocity_sd_mps) try_update({UpdateKind::kZeroVelocity});
   if (!standing && vehicle.non_holonomic && state_.nav.v_eb_e.norm() > vehicle.min_speed_mps)
     try_update({UpdateKind::kNonHolonomic});
+}
+
+// Before the other updates of a knot: its noise is that of the interval which ends there.
+void ForwardPass::hold_heading() {
+  if (!options_.vehicle.heading_hold_sd || !standing_ || restart_at(mission_, state_.nav.t) != nullptr) return;
+  const RestInterval interval{standing_->q_b_e, propagation_.elapsed(), propagation_.Phi_n().middleRows<3>(kPsi),
+                              propagation_.white_noise().gyro.middleCols<3>(kPsi)};
+  const Linearised measurement = heading_hold(state_, context(), interval, *options_.vehicle.heading_hold_sd);
+  static_cast<void>(take({UpdateKind::kHeadingHold}, measurement, record::FixQuality::kUnknown));
+}
+
+// A standstill found in the samples may begin and end with a little motion.
+bool ForwardPass::stands_still() const {
+  constexpr double kMargin = 0.5;  // s
+  return std::ranges::any_of(mission_.standstill, [t = state_.nav.t](const TimeSpan& span) {
+    return span.from + kMargin <= t && t < span.to - kMargin;
+  });
+}
+
+void ForwardPass::aid_updates() {
+  for (std::size_t a = 0; a < next_aid_.size(); ++a) {
+    while (next_aid_[a] < mission_.aids[a].samples->size() && aid_time(a) - state_.nav.t <= kTimeTolerance) {
+      Measurement sample{UpdateKind::kAid, next_aid_[a]++};
+      sample.aid = a;
+      const std::optional<bool> used = try_update(sample);
+      if (!used) continue;
+      ++aid_counts_[a].met;
+      if (!*used) ++aid_counts_[a].refused;
+    }
+  }
+}
+
+void ForwardPass::note_refused_aids() {
+  constexpr double kMany = 0.05;
+  for (std::size_t a = 0; a < aid_counts_.size(); ++a) {
+    const Count& count = aid_counts_[a];
+    if (static_cast<double>(count.refused) <= kMany * static_cast<double>(count.met)) continue;
+    result_.events.push_back({record::Event::Severity::kWarning, "aid_refused",
+                              fmt::format("{} of {} samples of {} contradict the other measurements and were refused: its "
+                                          "times, unit, mounting or sigma are not what the run file says",
+                                          count.refused, count.met, mission_.aids[a].name),
+                              state_.nav.t, static_cast<long>(count.refused)});
+  }
 }
 
 const std::vector<record::MemberBlocks::Block>& ForwardPass::member_blocks() const {
@@ -96,7 +139,7 @@ void ForwardPass::member_updates(std::size_t index) {
     for (; difference.member < mission_.imu.members.names.size(); ++difference.member) {
       const std::optional<bool> used = try_update(difference);
       if (!used) continue;
-      MemberCount& count = member_counts_[difference.member];
+      Count& count = member_counts_[difference.member];
       ++count.met;
       if (*used) continue;
       ++count.refused;
@@ -109,7 +152,7 @@ void ForwardPass::member_updates(std::size_t index) {
 void ForwardPass::note_refused_members() {
   constexpr double kMany = 0.05;
   for (std::size_t j = 0; j < member_counts_.size(); ++j) {
-    const MemberCount& count = member_counts_[j];
+    const Count& count = member_counts_[j];
     if (static_cast<double>(count.refused) <= kMany * static_cast<double>(count.met)) continue;
     result_.events.push_back(
         {record::Event::Severity::kWarning, "member_refused",
@@ -123,20 +166,25 @@ void ForwardPass::note_refused_members() {
 std::optional<bool> ForwardPass::try_update(const Measurement& what, record::FixQuality quality) {
   const std::optional<Linearised> measurement = linearise(what, mission_, options_, state_, context());
   if (!measurement) return std::nullopt;
-  Innovation step = innovation(state_, *measurement);
-  const bool used = !gate_refuses(*measurement, step.nis);
+  const bool used = take(what, *measurement, quality);
   if (outputs_.measurements) outputs_.measurements(what, used);
-  if (used && measurement->kind == UpdateKind::kGnssPosition) {
+  return used;
+}
+
+bool ForwardPass::take(const Measurement& what, const Linearised& measurement, record::FixQuality quality) {
+  Innovation step = innovation(state_, measurement);
+  const bool used = !gate_refuses(measurement, step.nis);
+  if (used && measurement.kind == UpdateKind::kGnssPosition) {
     if (gate_state_ == GateState::kOpen && !coasting()) {
-      admit_doubt(measurement->nu);
-      step = innovation(state_, *measurement);
+      admit_doubt(measurement.nu);
+      step = innovation(state_, measurement);
     }
     last_used_ = state_.nav.t;
   }
-  record_innovation(*measurement, step, used, quality);
+  record_innovation(what, measurement, step, used, quality);
   if (!used) return false;
   result_.log_likelihood += step.log_likelihood;
-  AppliedUpdate applied = apply(*measurement, step, state_);
+  AppliedUpdate applied = apply(measurement, step, state_);
   if (keeps_knots()) knot_.updates.push_back(std::move(applied));
   return true;
 }
@@ -202,15 +250,19 @@ void ForwardPass::admit_doubt(const Eigen::Vector3d& nu) {
   state_.P.block<3, 3>(kVel, kVel) += doubt / (since * since);
 }
 
-void ForwardPass::record_innovation(const Linearised& m, const Innovation& step, bool used, record::FixQuality quality) {
+void ForwardPass::record_innovation(const Measurement& what, const Linearised& m, const Innovation& step, bool used,
+                                    record::FixQuality quality) {
   InnovationRecord r;
   r.t = state_.nav.t;
   r.kind = m.kind;
+  r.aid = what.aid;
   r.used = used;
   r.dof = static_cast<int>(m.nu.size());
   r.nis = step.nis;
   r.quality = quality;
-  if (m.kind == UpdateKind::kNonHolonomic || m.kind == UpdateKind::kMemberDifference) {
+  const bool in_own_axes = m.kind == UpdateKind::kNonHolonomic || m.kind == UpdateKind::kMemberDifference ||
+                           m.kind == UpdateKind::kHeadingHold || m.kind == UpdateKind::kAid;
+  if (in_own_axes) {
     r.nu.head(m.nu.size()) = m.nu;
     r.sd.head(m.nu.size()) = step.S.diagonal().cwiseSqrt();
   } else {

@@ -30,8 +30,13 @@ std::optional<Linearised> linearise(const Measurement& m, const Mission& mission
       for (const std::size_t member : m.left_out) block.means[member].reset();
       return member_difference(state, context.layout, block, m.sensor, m.member);
     }
+    case UpdateKind::kAid: {
+      const AidStream& stream = mission.aids[m.aid];
+      return stream.aid->linearise((*stream.samples)[m.index], state, context, context.layout.aids()[m.aid]);
+    }
     case UpdateKind::kCarrierPhase:
-      break;  // not of this form: tight_coupling.hpp
+    case UpdateKind::kHeadingHold:
+      break;  // not functions of one state: tight_coupling.hpp, heading_hold()
   }
   return std::nullopt;
 }

@@ -31,9 +31,10 @@ using Eigen::Index;
 
 /// The mission with these fixes instead of its own and of carrier phases. A further member of Mission must be added here.
 Mission with_fixes(const Mission& mission, const record::GnssRecording& fixes) {
-  const auto& [imu, gnss, increments, C_s_b, lever_arm_b, time_offset_s, standstill, earth_rate, first_epoch, carrier,
-               restarts] = mission;
-  return {imu, fixes, increments, C_s_b, lever_arm_b, time_offset_s, standstill, earth_rate, first_epoch, nullptr, restarts};
+  const auto& [imu, gnss, increments, C_s_b, lever_arm_b, time_offset_s, standstill, earth_rate, first_epoch, carrier, restarts,
+               aids] = mission;
+  return {imu,        fixes,      increments,  C_s_b,   lever_arm_b, time_offset_s,
+          standstill, earth_rate, first_epoch, nullptr, restarts,    aids};
 }
 
 SearchBox box_of(const std::vector<NoiseParameter>& parameters) {

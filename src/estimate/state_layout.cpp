@@ -64,6 +64,11 @@ StateLayout::StateLayout(const noise::ImuErrorModel& model, const Eigen::Matrix3
     gnss_error_ = add_auxiliary("gnss_error_horizontal", gnss.horizontal_m, 1.0 / gnss.time_s, 2);
     add_auxiliary("gnss_error_vertical", gnss.vertical_m, 1.0 / gnss.time_s, 1);
   }
+  for (const AuxiliaryStates::Aid& aid : auxiliary.aids) {
+    aids_.push_back(size_);
+    for (const AidState& state : aid.states)
+      add_auxiliary(aid.name + "_" + state.name, state.sd, state.time_s > 0.0 ? 1.0 / state.time_s : 0.0, 1);
+  }
   carrier_slots_ = size_;
   size_ += auxiliary.carrier_slots;
 }

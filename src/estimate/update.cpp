@@ -24,6 +24,10 @@ std::string_view name(UpdateKind kind) {
       return "carrier_phase";
     case UpdateKind::kMemberDifference:
       return "member_difference";
+    case UpdateKind::kHeadingHold:
+      return "heading_hold";
+    case UpdateKind::kAid:
+      return "aid";
   }
   return "";
 }
@@ -33,6 +37,12 @@ Innovation innovation(const FilterState& state, const Linearised& measurement) {
   result.PHt.noalias() = state.P * measurement.H.transpose();
   result.S = measurement.R;
   result.S.noalias() += measurement.H * result.PHt;
+  if (measurement.M.size() > 0) {
+    // -nu = H d - noise and E[d noise'] = M:  E[d (-nu)'] = P H' - M,  S = H P H' - H M - M' H' + R
+    const ComponentCov HM = measurement.H * measurement.M;
+    result.S -= HM + HM.transpose();
+    result.PHt -= measurement.M;
+  }
   const Eigen::LLT<ComponentCov> llt(result.S);
   if (llt.info() != Eigen::Success || !measurement.nu.allFinite())
     throw NumericalError("innovation covariance is not positive definite", geo::to_string(state.nav.t),

@@ -194,4 +194,14 @@ geo::GpsTime TimeColumn::from_text() {
   }
 }
 
+void default_time_columns(const TableReader& table, TimeOptions& time, std::vector<Column>& columns) {
+  if (!columns.empty() || time.kind == TimeKind::kRow) return;
+  if (!time.kind_given && table.has("gps_week") && table.has("sow_s")) {
+    time.kind = TimeKind::kWeekAndSeconds;
+    columns = {"gps_week", "sow_s"};
+  } else {
+    columns = {"time_s"};
+  }
+}
+
 }  // namespace coast::io

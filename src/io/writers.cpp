@@ -314,4 +314,22 @@ void write_imu_csv(const std::filesystem::path& path, const record::ImuRecording
   file.commit();
 }
 
+void write_aid_csv(const std::filesystem::path& path, const record::AidRecording& aid, std::string_view column) {
+  AtomicFile file(path);
+  TextBuffer text(file);
+  text.put("gps_week,sow_s,");
+  text.put(column);
+  text.end_line();
+  for (const record::AidSample& sample : aid.samples) {
+    text.put(std::to_string(sample.t.week()));
+    text.put(',');
+    text.put_fixed(sample.t.sow(), 9);
+    text.put(',');
+    text.put_fixed(sample.value.x(), 6);
+    text.end_line();
+  }
+  text.flush();
+  file.commit();
+}
+
 }  // namespace coast::io

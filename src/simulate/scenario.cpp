@@ -213,6 +213,8 @@ Scenario Scenario::from(const Node& root, const TreeReader& read) {
   if (scenario.observations) scenario.observations->lever_arm_b = scenario.gnss.lever_arm_b;
   if (const auto array = root.find("array"))
     for (const Node& item : array->items()) scenario.array.push_back(read_array_imu(item, read));
+  if (const auto aids = root.find("aids"))
+    for (const Node& item : aids->items()) scenario.aids.push_back(AidOptions::from(item));
   if (const auto outages = root.find("outages"))
     for (const Node& outage : outages->items()) scenario.outages.push_back(read_outage(outage, scenario.motion.duration));
   scenario.start = read_start(root);

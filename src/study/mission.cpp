@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "coast/geo/earth.hpp"
 #include "coast/geo/rotation.hpp"
@@ -46,7 +47,7 @@ double largest(const noise::ImuErrorModel& model, noise::Sensor sensor) {
 // For `vehicle: car`: the assumption used for the heading holds for the whole mission.
 void drive_like_a_car(estimate::FilterOptions& filter) {
   filter.vehicle.non_holonomic = estimate::NonHolonomic{};
-  filter.vehicle.zero_velocity_sd_mps = 0.02;
+  filter.vehicle.zero_velocity_sd_mps = kCarZeroVelocitySd;
   filter.auxiliary.mounting_sd = 5.0 * geo::kDegree;
 }
 
@@ -77,7 +78,10 @@ ins::InitialState align_around_gaps(const ins::AlignmentInput& input, bool vehic
 }  // namespace
 
 PreparedMission::PreparedMission(record::ImuRecording imu, record::GnssRecording gnss, Setup setup, const Progress& progress)
-    : imu_(std::move(imu)), gnss_(std::move(gnss)), setup_(std::move(setup)) {
+    : imu_(std::move(imu)),
+      gnss_(std::move(gnss)),
+      setup_(std::move(setup)),
+      heading_hold_sd_(std::exchange(setup_.filter.vehicle.heading_hold_sd, std::nullopt)) {
   check_overlap(imu_, gnss_);
   if (setup_.unstated.time_offset || setup_.unstated.noise.gnss_scale) leave_out_gross_errors(gnss_, adaptations_);
   take_out_velocity_lag();
@@ -107,6 +111,28 @@ PreparedMission::PreparedMission(record::ImuRecording imu, record::GnssRecording
   note_adaptations();
   first_knots_ = estimate::KnotStore();
   mission_->carrier = setup_.carrier.get();
+  take_aids();
+}
+
+// Only a few constants are found from the fixes, among them those that a studied outage withholds later.
+void PreparedMission::take_aids() {
+  setup_.filter.vehicle.heading_hold_sd = heading_hold_sd_;
+  if (setup_.aids.empty()) return;
+  record::GnssRecording valid = gnss_;
+  for (record::GnssFix& fix : valid.fixes) fix.t = fix.t - mission_->time_offset_s;
+  for (const AidSource& source : setup_.aids) {
+    std::vector<record::AidSample> samples = source.aid->samples(source.rows, valid, adaptations_);
+    std::erase_if(samples, [this](const record::AidSample& sample) {
+      return sample.t <= start_.nav.t || imu_.samples.back().t < sample.t;
+    });
+    if (samples.empty())
+      throw InputError({source.rows.source, 0,
+                        fmt::format("no sample of the {} that can be used between {} and {}", source.name,
+                                    geo::to_string(start_.nav.t), geo::to_string(imu_.samples.back().t)),
+                        "samples within the mission", "Check gps_week and the time scale (GPS or UTC) of the file."});
+    mission_->aids.push_back(
+        {source.name, source.aid, std::make_shared<const std::vector<record::AidSample>>(std::move(samples))});
+  }
 }
 
 // Noise comes first: with noise stated far too small neither the gate nor an offset is meaningful. The second fit uses
@@ -182,6 +208,7 @@ void PreparedMission::align(const Progress& progress) {
       start_ = align_around_gaps(input, true);
       heading_assumed_ = true;
       drive_like_a_car(setup_.filter);
+      heading_hold_sd_ = kCarHeadingHoldSd;
     } catch (const NumericalError&) {
       std::rethrow_exception(without_assumption);
     }
@@ -288,8 +315,10 @@ estimate::NoiseFit PreparedMission::fit(const estimate::NoiseFitChoice& choice, 
                                  mission_->first_epoch,
                                  nullptr,
                                  mission_->restarts};
+  estimate::FilterOptions options = setup_.filter;
+  options.vehicle.heading_hold_sd.reset();  // its dependence on the gyros' noise is not in the gradient of the fit
   return estimate::fit_noise(
-      window, setup_.model, setup_.filter, choice, from,
+      window, setup_.model, options, choice, from,
       [this](const estimate::ForwardFilter& filter) { return start_state(filter); }, stage(progress, "fitting the noise"));
 }
 

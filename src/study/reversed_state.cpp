@@ -22,6 +22,7 @@ ReversedRun::ReversedRun(const estimate::Mission& forward, const record::ImuReco
     mission_.standstill.push_back({ins::mirrored(span.to, mirror), ins::mirrored(span.from, mirror)});
   std::ranges::reverse(mission_.standstill);
   mission_.restarts = restarts_at_fixes(imu, gnss, mission_.time_offset_s, mission_.lever_arm_b);
+  mission_.aids = estimate::reversed(forward.aids, mirror);
   if (forward.carrier == nullptr) return;
   carrier_ = estimate::reversed(*forward.carrier, mirror);
   mission_.carrier = &*carrier_;

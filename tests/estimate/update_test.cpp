@@ -62,7 +62,9 @@ class Updates : public testing::TestWithParam<UpdateKind> {
         return non_holonomic(state, context, {.point_b = {-1.1, 0.3, 0.9}, .pitch = 0.1, .yaw = -0.2});
       case UpdateKind::kCarrierPhase:
       case UpdateKind::kMemberDifference:
-        break;  // not of this form: tight_coupling_test.cpp, member_difference_test.cpp
+      case UpdateKind::kHeadingHold:
+      case UpdateKind::kAid:
+        break;  // not of this form: tight_coupling_test.cpp, member_difference_test.cpp, aid_test.cpp
     }
     return {};
   }

@@ -5,6 +5,7 @@
 #include <fstream>
 #include <stdexcept>
 
+#include "coast/io/aid.hpp"
 #include "coast/io/gnss.hpp"
 #include "coast/io/imu.hpp"
 #include "coast/io/inspect.hpp"
@@ -69,6 +70,13 @@ void check(const record::PacketRecording& recording) {
     require(packet.counter >= 0 && std::isfinite(packet.arrival_s), "counters and arrivals are numbers");
     require(recording.rates.at(packet.row).allFinite() && recording.forces.at(packet.row).allFinite(), "values are finite");
   }
+}
+
+void check(const record::AidRecording& aid) {
+  require(!aid.samples.empty(), "at least one sample");
+  require_increasing(aid.samples);
+  for (const auto& sample : aid.samples)
+    require(sample.value.allFinite() && sample.sd.allFinite() && sample.sd.minCoeff() >= 0.0, "samples are finite");
 }
 
 void check(const record::GnssRecording& gnss) {
@@ -254,6 +262,15 @@ void packets(std::string_view bytes) {
   read_and_check([&] { return io::read_packets(options); });
 }
 
+void aid(std::string_view bytes) {
+  io::AidFileOptions options;
+  options.file = as_file(bytes);
+  options.value_columns = {"speed_mps"};
+  options.sd_columns = {"speed_sd_mps"};
+  options.time.gps_week = 2300;
+  read_and_check([&] { return io::read_aid(options); });
+}
+
 /// IMU and positions of a format by its name.
 void both_of(std::string_view bytes, const char* format) {
   io::ImuFileOptions imu_options;
@@ -299,6 +316,7 @@ void yaml(std::string_view bytes) {
 
 const std::vector<Entry>& entries() {
   static const std::vector<Entry> table = {
+      {"aid", aid},
       {"imu", imu_auto},
       {"imu_table", imu_table},
       {"imu_binary", imu_binary},

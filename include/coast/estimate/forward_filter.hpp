@@ -5,6 +5,7 @@
 #include <optional>
 #include <vector>
 
+#include "coast/estimate/aid.hpp"
 #include "coast/estimate/carrier_observations.hpp"
 #include "coast/estimate/knot.hpp"
 #include "coast/estimate/state_layout.hpp"
@@ -57,6 +58,7 @@ struct Mission {
   /// Tight coupling: used instead of the fixes. Must outlive the filter.
   const CarrierObservations* carrier = nullptr;
   std::vector<Restart> restarts = {};  ///< ascending; each becomes a knot
+  std::vector<AidStream> aids = {};    ///< each sample becomes a knot
 };
 
 /// Factors on the stated GNSS standard deviations.
@@ -70,8 +72,9 @@ struct GnssScale {
 struct VehicleConstraints {
   std::optional<NonHolonomic> non_holonomic;
   std::optional<double> zero_velocity_sd_mps;
-  double interval_s = 0.5;     ///< at most one of each per interval: slip errors are correlated in time
-  double min_speed_mps = 0.2;  ///< below it only zero-velocity updates are used
+  std::optional<double> heading_hold_sd;  ///< rad/sqrt(s): random walk of the heading at rest
+  double interval_s = 0.5;                ///< at most one of each per interval: slip errors are correlated in time
+  double min_speed_mps = 0.2;             ///< below it only zero-velocity updates are used
 };
 
 struct FilterOptions {
@@ -88,10 +91,11 @@ struct FilterOptions {
 };
 
 /// One innovation in axes for display: GNSS in N, E, D; non-holonomic: lateral and vertical in the first two; carrier phases:
-/// the resulting change of antenna position; member difference: its axes.
+/// the resulting change of antenna position; member difference: its axes; heading hold, aids: their components.
 struct InnovationRecord {
   geo::GpsTime t;
   UpdateKind kind = UpdateKind::kGnssPosition;
+  std::size_t aid = 0;  ///< index in Mission::aids, of kAid
   bool used = true;
   int dof = 3;
   Eigen::Vector3d nu = Eigen::Vector3d::Zero();
@@ -104,10 +108,11 @@ struct InnovationRecord {
 /// Identifies a measurement of a mission, so that it can be linearised again.
 struct Measurement {
   UpdateKind kind = UpdateKind::kGnssPosition;
-  std::size_t index = 0;                        ///< of the fix, or of the members' block
+  std::size_t index = 0;                        ///< of the fix, of the members' block, or of the aid's sample
   noise::Sensor sensor = noise::Sensor::kGyro;  ///< of a member's difference
   std::size_t member = 0;                       ///< likewise
   std::vector<std::size_t> left_out = {};       ///< likewise: members rejected in this block
+  std::size_t aid = 0;                          ///< index in Mission::aids
 };
 
 /// A jump: positions that differed from an instant on and were rejected, until the filter accepted them.
@@ -131,7 +136,7 @@ struct FilterOutputs {
   std::function<void(const Knot&, const WhiteNoise&)> closed_knots = {};
   record::EpochSink epochs;                          ///< filtered state at IMU epochs
   std::function<void(const FilterState&)> at_knots;  ///< before the knot's updates
-  /// Every measurement, and whether it was used; called at the next knot. Not for carrier phases.
+  /// Every measurement, and whether it was used; called at the next knot. Not for carrier phases and heading hold.
   std::function<void(const Measurement&, bool)> measurements;
   std::function<void(double)> progress;  ///< fraction done
 };

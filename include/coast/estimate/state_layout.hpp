@@ -23,6 +23,13 @@ struct CorrelatedGnss {
   double time_s = 60.0;  ///< correlation time
 };
 
+/// An error of an aiding sensor: a constant, or a stationary Gauss-Markov process.
+struct AidState {
+  std::string name;     ///< without that of the aid: "scale"
+  double sd = 0.0;      ///< above zero
+  double time_s = 0.0;  ///< correlation time; 0: constant
+};
+
 /// States estimated in addition to the IMU errors. A standard deviation of zero leaves the states out.
 struct AuxiliaryStates {
   double lever_arm_sd_m = 0.0;    ///< prior sd of each component, body axes
@@ -33,6 +40,12 @@ struct AuxiliaryStates {
   /// Number of states reserved for unknowns of carrier-phase observations, which begin and end: constant states without prior,
   /// unnamed here.
   int carrier_slots = 0;
+  /// Errors of aiding sensors, those of each aid together.
+  struct Aid {
+    std::string name;
+    std::vector<AidState> states;
+  };
+  std::vector<Aid> aids = {};
 };
 
 class StateLayout {
@@ -76,6 +89,8 @@ class StateLayout {
   [[nodiscard]] std::optional<int> mounting() const { return mounting_; }        ///< pitch, yaw, rad
   [[nodiscard]] std::optional<int> base_offset() const { return base_offset_; }  ///< 3 states, e
   [[nodiscard]] std::optional<int> gnss_error() const { return gnss_error_; }    ///< 3 states, N, E, D
+  /// Index of the first state of each aid.
+  [[nodiscard]] const std::vector<int>& aids() const { return aids_; }
   /// The carrier slots are the last states, [carrier_slots(), size()).
   [[nodiscard]] int carrier_slots() const { return carrier_slots_; }
   /// White-noise densities in body axes, [signal]^2/Hz.
@@ -110,6 +125,7 @@ class StateLayout {
   std::optional<int> mounting_;
   std::optional<int> base_offset_;
   std::optional<int> gnss_error_;
+  std::vector<int> aids_;
   int carrier_slots_ = kNav;
   Eigen::Matrix3d gyro_density_b_ = Eigen::Matrix3d::Zero();
   Eigen::Matrix3d accel_density_b_ = Eigen::Matrix3d::Zero();

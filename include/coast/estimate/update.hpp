@@ -12,7 +12,16 @@
 
 namespace coast::estimate {
 
-enum class UpdateKind { kGnssPosition, kGnssVelocity, kZeroVelocity, kNonHolonomic, kCarrierPhase, kMemberDifference };
+enum class UpdateKind {
+  kGnssPosition,
+  kGnssVelocity,
+  kZeroVelocity,
+  kNonHolonomic,
+  kCarrierPhase,
+  kMemberDifference,
+  kHeadingHold,
+  kAid
+};
 [[nodiscard]] std::string_view name(UpdateKind kind);
 /// Whether it observes the position.
 [[nodiscard]] constexpr bool is_position(UpdateKind kind) {
@@ -30,6 +39,8 @@ struct Linearised {
   Components nu;      ///< m
   Eigen::MatrixXd H;  ///< m x n
   ComponentCov R;     ///< m x m, positive definite
+  /// Covariance of the errors d with the measurement's noise, n x m, where its noise is also in the state; empty: none.
+  Eigen::MatrixXd M = {};
 };
 
 /// Input of every update besides the filter's state.
@@ -47,6 +58,18 @@ struct UpdateContext {
                                                       const record::GnssFix& fix);
 /// Zero velocity at standstill.   0 = v_eb
 [[nodiscard]] Linearised zero_velocity(const FilterState& state, double sd_mps);
+
+/// Heading at rest does not change:  0 = change of heading since the knot before. The change is the integral of the gyros, so
+/// their noise in it is that of the state too (M).
+struct RestInterval {
+  Eigen::Quaterniond q_b_e;                      ///< attitude at its beginning, after the updates there
+  double seconds = 0.0;                          ///< its length
+  Eigen::Matrix<double, 3, Eigen::Dynamic> Phi;  ///< transition of the attitude over it, 3 x columns
+  Eigen::Matrix<double, kNav, 3> Q_psi;  ///< covariance of the navigation states with the gyros' white noise in the attitude
+};
+/// @param sd_rad_rts  random walk of the heading that the vehicle is allowed, rad/sqrt(s)
+[[nodiscard]] Linearised heading_hold(const FilterState& state, const UpdateContext& context, const RestInterval& interval,
+                                      double sd_rad_rts);
 
 /// A car's wheels neither slide sideways nor leave the road at `point_b`:  0 = rows y, z of C_b_v (C_e_b v + omega x p).
 struct NonHolonomic {
@@ -86,7 +109,7 @@ struct AppliedUpdate {
 /// Innovation with its covariance, before it is used.
 struct Innovation {
   ComponentCov S;       ///< m x m
-  Eigen::MatrixXd PHt;  ///< n x m
+  Eigen::MatrixXd PHt;  ///< n x m, covariance of d with -nu: P H' (+ M)
   double nis = 0.0;     ///< nu' S^-1 nu
   double log_likelihood = 0.0;
 };

@@ -85,6 +85,9 @@ class TimeColumn {
   bool two_columns_ = false;
 };
 
+/// The default time columns where none are given: time_s, or gps_week and sow_s as in coast's own trajectories.
+void default_time_columns(const TableReader& table, TimeOptions& time, std::vector<Column>& columns);
+
 /// GPS week for which `seconds_of_week` is nearest to `near`.
 [[nodiscard]] int nearest_week(double seconds_of_week, geo::GpsTime near);
 

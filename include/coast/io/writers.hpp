@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "coast/geo/earth.hpp"
+#include "coast/record/aid.hpp"
 #include "coast/record/error.hpp"
 #include "coast/record/gnss.hpp"
 #include "coast/record/imu.hpp"
@@ -93,5 +94,7 @@ class TrajectoryWriter {
 void write_gnss_pos(const std::filesystem::path& path, const record::GnssRecording& gnss);
 /// IMU as CSV with the default header: mean rates over each interval.
 void write_imu_csv(const std::filesystem::path& path, const record::ImuRecording& imu);
+/// First component of an aiding sensor's samples as CSV: gps_week, sow_s and a column of that name.
+void write_aid_csv(const std::filesystem::path& path, const record::AidRecording& aid, std::string_view column);
 
 }  // namespace coast::io

@@ -98,6 +98,14 @@ struct NisSummary {
   std::size_t epochs = 0;
 };
 
+/// An aiding sensor in the solution.
+struct AidUse {
+  std::string name;
+  std::size_t used = 0;
+  std::size_t refused = 0;
+  NisSummary nis;  ///< of the samples that were used
+};
+
 /// Curves of the streamed trajectories, decimated while streaming.
 class TrajectoryCurves {
  public:
@@ -131,6 +139,7 @@ struct ProcessResult {
   std::vector<std::string> inspection;                                ///< how the input was interpreted, sentence by sentence
   std::string alignment;
   NisSummary nis;
+  std::vector<AidUse> aids;
   double smallest_refusable_m = 0.0;  ///< median: the gate cannot detect a smaller horizontal error
   std::vector<estimate::InnovationRecord> innovations;
   std::optional<AgainstReference> reference;

@@ -10,6 +10,7 @@
 #include "coast/config/node.hpp"
 #include "coast/diagnose/correction.hpp"
 #include "coast/geo/rotation.hpp"
+#include "coast/io/aid.hpp"
 #include "coast/io/gnss.hpp"
 #include "coast/io/imu.hpp"
 #include "coast/io/reference.hpp"
@@ -47,6 +48,13 @@ struct OutputOptions {
   Eigen::Vector3d point_b = Eigen::Vector3d::Zero();  ///< from the IMU to the reference point of the trajectory, m
 };
 
+/// An aiding sensor of the run: where its samples are, and what they measure.
+struct AidConfig {
+  std::string name;
+  io::AidFileOptions file;
+  std::shared_ptr<const estimate::Aid> aid;
+};
+
 struct RunConfig {
   config::Node root;
   std::filesystem::path file;
@@ -62,6 +70,7 @@ struct RunConfig {
   study::Setup setup;
   std::optional<GivenStart> start;
   std::vector<diagnose::NamedEffect> effects;  ///< corrected in the recordings before anything else
+  std::vector<AidConfig> aids;
   std::vector<OutageSeconds> outages;
   std::optional<study::OutageSweep> sweep;
   int passes = 1;  ///< odd: forward, then backward and forward again
@@ -80,6 +89,7 @@ struct Recordings {
   record::GnssRecording gnss;
   std::optional<record::Trajectory> reference;
   std::shared_ptr<const estimate::CarrierObservations> carrier;  ///< for tight coupling
+  std::vector<record::AidRecording> aids;                        ///< in the order of the configuration
   std::vector<std::string> inspection;                           ///< how the input was interpreted, sentence by sentence
   std::optional<double> time_shift_s;                            ///< of GNSS relative to IMU, for the best match of turns
   record::Events inspection_events;

@@ -25,13 +25,14 @@ struct SimulationResult {
   simulate::SimulatedMission mission;
   std::optional<simulate::SimulatedObservations> observations;  ///< of rover and base, if the scenario has them
   std::vector<record::ImuRecording> array;                      ///< of each of the scenario's IMUs, by its own clock
+  std::vector<record::AidRecording> aids;                       ///< of each aiding sensor, in the units of its file
 };
 /// The same numbers for any number of threads.
 [[nodiscard]] SimulationResult simulate(const SimulationConfig& config, const Progress& progress);
 
 [[nodiscard]] std::vector<std::string> files_of(const SimulationConfig& config);
 /// imu.csv, gnss.pos, truth.nav, error_model.yaml and the run.yaml that processes them; RINEX of rover and base with
-/// run-rinex.yaml; the recordings of an array with array.yaml.
+/// run-rinex.yaml; the recordings of an array with array.yaml; one file for each aiding sensor.
 void write(const SimulationConfig& config, const SimulationResult& result, const std::filesystem::path& folder);
 [[nodiscard]] std::string told(const SimulationConfig& config, const SimulationResult& result,
                                const std::filesystem::path& folder);

@@ -14,6 +14,7 @@
 #include "coast/record/gnss.hpp"
 #include "coast/record/imu.hpp"
 #include "coast/record/trajectory.hpp"
+#include "coast/simulate/aids.hpp"
 #include "coast/simulate/gnss.hpp"
 #include "coast/simulate/imu.hpp"
 #include "coast/simulate/motions.hpp"
@@ -59,6 +60,7 @@ struct StudiedOutage {
 ///     array:                                   # left out: one IMU; else further ones on the same body, with their own noise
 ///       - {name: left, error_model: ../imu/xsens-dot.yaml, position_m: [0.1, -0.1, 0], axes: [x, y, z],
 ///          mounting_deg: [0, 0, 0], clock_offset_s: 0.004, clock_drift_ppm: 20}   # tag = true time + offset + drift * elapsed
+///     aids: []                                 # aiding sensors, see AidOptions
 ///     outages: [{manoeuvre: roundabout, duration_s: 20}, {elapsed_s: 500, duration_s: 60}]   # for the run to study
 ///     start_gps: {week: 2374, sow: 208800}
 ///     seed: 1
@@ -81,6 +83,7 @@ struct Scenario {
     double clock_drift_ppm = 0.0;
   };
   std::vector<ArrayImu> array;
+  std::vector<AidOptions> aids;
   /// An outage of a scenario: at a time, or at the first manoeuvre of a name.
   struct Outage {
     std::string manoeuvre;           ///< empty if the time is given

@@ -10,6 +10,7 @@
 #include "coast/estimate/forward_filter.hpp"
 #include "coast/estimate/knot.hpp"
 #include "coast/estimate/noise_fit.hpp"
+#include "coast/geo/units.hpp"
 #include "coast/ins/alignment.hpp"
 #include "coast/study/bias_drift.hpp"
 
@@ -26,6 +27,17 @@ struct Unstated {
   bool lever_arm = false;  ///< estimated if they contradict the stated one
   double time_offset_seen_s =
       0.0;  ///< from the turns in IMU and GNSS, to 0.05 s; used if it has a higher likelihood in the filter
+};
+
+/// Of a car at rest, unless configured.
+inline constexpr double kCarZeroVelocitySd = 0.02;                 ///< m/s
+inline constexpr double kCarHeadingHoldSd = 0.002 * geo::kDegree;  ///< rad/sqrt(s)
+
+/// An aiding sensor as recorded.
+struct AidSource {
+  std::string name;
+  std::shared_ptr<const estimate::Aid> aid;
+  record::AidRecording rows;
 };
 
 /// How a mission is processed; filled from run.yaml.
@@ -52,6 +64,8 @@ struct Setup {
   std::optional<estimate::BatchOptions> batch;
   /// Tight coupling, only of the prepared mission: the preparation uses the fixes.
   std::shared_ptr<const estimate::CarrierObservations> carrier;
+  /// Aiding sensors, only of the prepared mission too; constants that they leave open are found from the fixes.
+  std::vector<AidSource> aids;
 };
 
 /// Selects time offset and lever arm, which together give the antenna position at the time of a fix.
@@ -141,6 +155,7 @@ class PreparedMission {
   void adapt_drift();
   void note_adaptations();
   void restart_behind_gaps();
+  void take_aids();
   /// Filters the first `seconds`, including fixes that a studied outage withholds later: only a few constant parameters are
   /// estimated from hundreds of fixes.
   [[nodiscard]] estimate::FilterResult first_seconds(double seconds, const estimate::FilterOptions& options,
@@ -161,6 +176,7 @@ class PreparedMission {
   Eigen::Vector3d lever_arm_sd_ = Eigen::Vector3d::Zero();
   bool gain_errors_left_out_ = false;
   bool heading_assumed_ = false;
+  std::optional<double> heading_hold_sd_;  ///< as configured; not used by the preparation
   DriftFactors drift_;
   record::Events adaptations_;
 };

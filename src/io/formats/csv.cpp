@@ -29,21 +29,10 @@ std::vector<Column> three_if_present(const TableReader& table, const std::array<
   return {names.begin(), names.end()};
 }
 
-/// The default time columns: time_s, or gps_week and sow_s as in coast's own trajectories.
-void default_time(const TableReader& table, TimeOptions& time, std::vector<Column>& columns) {
-  if (!columns.empty() || time.kind == TimeKind::kRow) return;
-  if (!time.kind_given && table.has("gps_week") && table.has("sow_s")) {
-    time.kind = TimeKind::kWeekAndSeconds;
-    columns = {"gps_week", "sow_s"};
-  } else {
-    columns = {"time_s"};
-  }
-}
-
 record::ImuRecording read_imu_columns(const ImuFileOptions& given, Format::Near near) {
   ImuFileOptions o = given;
   TableReader table(o.file);
-  default_time(table, o.time, o.time_columns);
+  default_time_columns(table, o.time, o.time_columns);
   if (o.gyro_columns.empty()) {
     o.gyro_columns = {"gyro_x_radps", "gyro_y_radps", "gyro_z_radps"};
     o.accel_columns = {"accel_x_mps2", "accel_y_mps2", "accel_z_mps2"};
@@ -55,7 +44,7 @@ record::ImuRecording read_imu_columns(const ImuFileOptions& given, Format::Near 
 record::GnssRecording read_gnss_columns(const GnssFileOptions& given, Format::Near near) {
   GnssFileOptions o = given;
   TableReader table(o.file);
-  default_time(table, o.time, o.time_columns);
+  default_time_columns(table, o.time, o.time_columns);
   if (o.position_columns.empty()) {
     o.position_columns = {"lat_deg", "lon_deg", "height_m"};
     o.sd_columns = three_if_present(table, {"sdn_m", "sde_m", "sdd_m"});
@@ -70,7 +59,7 @@ record::GnssRecording read_gnss_columns(const GnssFileOptions& given, Format::Ne
 record::Trajectory read_reference_csv(const ReferenceFileOptions& given, Format::Near near) {
   ReferenceFileOptions o = given;
   TableReader table(o.file);
-  default_time(table, o.time, o.time_columns);
+  default_time_columns(table, o.time, o.time_columns);
   if (o.position_columns.empty()) {
     o.position_columns = {"lat_deg", "lon_deg", "height_m"};
     o.velocity_columns = three_if_present(table, {"vn_mps", "ve_mps", "vd_mps"});

@@ -15,6 +15,7 @@ ProcessResult what_was_read(const Recordings& recordings) {
   };
   add(recordings.imu.events);
   add(recordings.gnss.events);
+  for (const record::AidRecording& aid : recordings.aids) add(aid.events);
   if (recordings.reference) add(recordings.reference->events);
   add(recordings.inspection_events);
   result.inspection = recordings.inspection;

@@ -69,7 +69,7 @@ void TrajectoryFiles::close() {
 
 void write(const RunConfig& config, const ProcessResult& result, const std::filesystem::path& folder) {
   io::write_text(folder / "run.resolved.yaml", result.resolved);
-  io::write_text(folder / "innovations.csv", innovations_csv(result.innovations));
+  io::write_text(folder / "innovations.csv", innovations_csv(result));
   write_page(make_page({config, result}), folder);
   io::write_text(folder / "summary.json", summary_json(result));
 }

@@ -26,6 +26,24 @@ void count_innovations(const Work& work, ProcessResult& result) {
   result.nis = nis_of(result.innovations);
 }
 
+void count_aids(const Work& work, ProcessResult& result) {
+  for (const estimate::AidStream& stream : work.mission.mission().aids) result.aids.push_back({stream.name, 0, 0, {}});
+  for (const estimate::InnovationRecord& r : result.innovations) {
+    if (r.kind != estimate::UpdateKind::kAid) continue;
+    AidUse& aid = result.aids[r.aid];
+    ++(r.used ? aid.used : aid.refused);
+    if (!r.used) continue;
+    ++aid.nis.epochs;
+    aid.nis.mean += r.nis;
+    aid.nis.expected += r.dof;
+  }
+  for (AidUse& aid : result.aids) {
+    if (aid.nis.epochs == 0) continue;
+    aid.nis.mean /= static_cast<double>(aid.nis.epochs);
+    aid.nis.expected /= static_cast<double>(aid.nis.epochs);
+  }
+}
+
 void offer_gnss_noise(const Work& work, ProcessResult& result) {
   constexpr double kFits = 1.25;        // rms of the innovations over their sigma, or its inverse
   constexpr std::size_t kFewest = 100;  // epochs; fewer have little significance

@@ -180,6 +180,7 @@ Delivery deliver(const Work& work, const EarlierPasses& passes, const study::Gap
   result.events.insert(result.events.end(), solution.forward.events.begin(), solution.forward.events.end());
   result.batch = std::move(delivery.solution.batch);
   count_innovations(work, result);
+  count_aids(work, result);
   note_scores(work, audience.forward_scores(), audience.scores(), result);
   result.states = state_tracks(solution.filter->layout(), result.start, delivery.forward_knots, solution.smoothed);
   if (const auto event = unseen_base_offset(result.states)) result.events.push_back(*event);

@@ -63,6 +63,7 @@ struct Delivery {
 
 /// Counts, NIS and smallest error detectable by the gate.
 void count_innovations(const Work& work, ProcessResult& result);
+void count_aids(const Work& work, ProcessResult& result);
 /// Suggests sigmas if the stated ones do not fit.
 void offer_gnss_noise(const Work& work, ProcessResult& result);
 /// Whether the recording contradicts the stated lever arm.

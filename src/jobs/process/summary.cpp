@@ -169,6 +169,11 @@ std::string summary_json(const ProcessResult& result) {
   if (result.time_offset_sd_s) j["gnss"]["time_offset_sd_s"] = *result.time_offset_sd_s;
   if (result.nis.epochs > 0)
     j["nis"] = {{"mean", result.nis.mean}, {"expected", result.nis.expected}, {"epochs", result.nis.epochs}};
+  for (const AidUse& aid : result.aids) {
+    Json a{{"name", aid.name}, {"used", aid.used}, {"refused", aid.refused}};
+    if (aid.nis.epochs > 0) a["nis"] = {{"mean", aid.nis.mean}, {"expected", aid.nis.expected}};
+    j["aids"].push_back(std::move(a));
+  }
   j["span"] = {{"week", result.start.week()}, {"start_s", result.start.sow()}, {"end_s", result.end.sow()}};
   j["alignment"] = result.alignment;
   if (result.reference) {
@@ -196,12 +201,15 @@ std::string summary_json(const ProcessResult& result) {
   return j.dump(1) + "\n";
 }
 
-std::string innovations_csv(const std::vector<estimate::InnovationRecord>& innovations) {
+std::string innovations_csv(const ProcessResult& result) {
   std::string text = "gps_week,sow_s,kind,used,quality,nu_1,nu_2,nu_3,sd_1,sd_2,sd_3,nis,dof\n";
-  for (const estimate::InnovationRecord& r : innovations)
+  const auto name_of = [&result](const estimate::InnovationRecord& r) -> std::string_view {
+    return r.kind == estimate::UpdateKind::kAid ? result.aids[r.aid].name : estimate::name(r.kind);
+  };
+  for (const estimate::InnovationRecord& r : result.innovations)
     text += fmt::format("{},{:.6f},{},{},{},{:.9g},{:.9g},{:.9g},{:.9g},{:.9g},{:.9g},{:.6g},{}\n", r.t.week(), r.t.sow(),
-                        estimate::name(r.kind), r.used ? 1 : 0, static_cast<int>(r.quality), r.nu.x(), r.nu.y(), r.nu.z(),
-                        r.sd.x(), r.sd.y(), r.sd.z(), r.nis, r.dof);
+                        name_of(r), r.used ? 1 : 0, static_cast<int>(r.quality), r.nu.x(), r.nu.y(), r.nu.z(), r.sd.x(),
+                        r.sd.y(), r.sd.z(), r.nis, r.dof);
   return text;
 }
 
@@ -210,6 +218,9 @@ std::string summary_text(const ProcessResult& result) {
                                  result.end - result.start, result.gnss_used, result.gnss_epochs, result.gnss_rejected,
                                  result.nis.mean, result.nis.expected);
   text += "start: " + result.alignment + "\n";
+  for (const AidUse& aid : result.aids)
+    text += fmt::format("{}: {} samples used, {} refused; NIS {:.2f}, expected {:.0f}\n", aid.name, aid.used, aid.refused,
+                        aid.nis.mean, aid.nis.expected);
   for (const record::Event& event : result.events)
     if (event.kind == "gnss_sigmas_do_not_fit") text += "warning: " + event.text + "\n";
   if (result.reference) {

@@ -10,7 +10,7 @@ namespace coast::jobs {
 [[nodiscard]] std::string summary_json(const ProcessResult& result);
 [[nodiscard]] NisSummary nis_of(const std::vector<estimate::InnovationRecord>& innovations);
 /// innovations.csv: one line each, N, E, D (others as in estimate::InnovationRecord), used and rejected ones.
-[[nodiscard]] std::string innovations_csv(const std::vector<estimate::InnovationRecord>& innovations);
+[[nodiscard]] std::string innovations_csv(const ProcessResult& result);
 /// The lines at the end of a run on the terminal.
 [[nodiscard]] std::string summary_text(const ProcessResult& result);
 /// "without GNSS", "with 3 satellites"

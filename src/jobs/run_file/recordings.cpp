@@ -75,6 +75,7 @@ Recordings load(const RunConfig& config, const Progress& progress) {
   recordings.time_shift_s = inspection.time_shift_s;
   check_leap_seconds(config.imu.time, recordings.imu.source, recordings.imu.samples.back().t, recordings.inspection_events);
   check_leap_seconds(config.gnss.time, recordings.gnss.source, recordings.gnss.fixes.back().t, recordings.inspection_events);
+  for (const AidConfig& aid : config.aids) recordings.aids.push_back(io::read_aid(aid.file, recordings.imu.samples.front().t));
   if (config.reference) recordings.reference = io::read_reference(*config.reference, recordings.imu.samples.front().t);
   return recordings;
 }
@@ -84,6 +85,7 @@ void tell_inspection(const Recordings& recordings, const Progress& progress) {
     if (progress.say) progress.say(sentence);
   tell_warnings(recordings.imu.events, progress);
   tell_warnings(recordings.gnss.events, progress);
+  for (const record::AidRecording& aid : recordings.aids) tell_warnings(aid.events, progress);
   if (recordings.reference) tell_warnings(recordings.reference->events, progress);
   tell_warnings(recordings.inspection_events, progress);
 }
@@ -110,6 +112,8 @@ study::Setup setup_of(const RunConfig& config, const Recordings& recordings, con
   study::Setup setup = config.setup;
   setup.unstated = {};  // only `process` tests what is not stated: outages and diagnoses compare stated models
   setup.carrier = recordings.carrier;
+  for (std::size_t i = 0; i < config.aids.size(); ++i)
+    setup.aids.push_back({config.aids[i].name, config.aids[i].aid, recordings.aids[i]});
   const geo::GpsTime first_fix = recordings.gnss.fixes.front().t;
   if (config.start) setup.start = start_of(*config.start, first_fix);
   const auto studied_from = [&setup](geo::GpsTime t) {

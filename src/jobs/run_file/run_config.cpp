@@ -10,6 +10,7 @@
 #include "coast/io/yaml.hpp"
 #include "coast/study/plausibility.hpp"
 #include "common/keys.hpp"
+#include "run_file/run_aids.hpp"
 #include "run_file/run_config.hpp"
 #include "run_file/run_effects.hpp"
 
@@ -94,18 +95,22 @@ void read_vehicle(const Node& root, study::Setup& setup) {
   const std::string kind = vehicle->is_map() ? map.at("kind").text() : vehicle->text();
   if (kind != "car") throw vehicle->error("vehicle " + kind, "car");
   setup.vehicle_forward = true;
-  std::vector<std::string> updates{"zupt", "nhc"};
+  std::vector<std::string> updates{"zupt", "zaru", "nhc"};
   if (const auto list = map.find("updates")) {
     updates.clear();
     for (const Node& item : list->items()) {
       updates.push_back(item.text());
-      if (updates.back() != "zupt" && updates.back() != "nhc") throw item.error(updates.back(), "zupt or nhc");
+      if (updates.back() != "zupt" && updates.back() != "zaru" && updates.back() != "nhc")
+        throw item.error(updates.back(), "zupt, zaru or nhc");
     }
   }
   estimate::VehicleConstraints& constraints = setup.filter.vehicle;
   constraints.interval_s = map.number_within("interval_s", constraints.interval_s, 0.02, 60.0);
   if (std::ranges::count(updates, "zupt") > 0)
-    constraints.zero_velocity_sd_mps = map.number_within("zupt_sd_mps", 0.02, 1e-4, 1.0);
+    constraints.zero_velocity_sd_mps = map.number_within("zupt_sd_mps", study::kCarZeroVelocitySd, 1e-4, 1.0);
+  if (std::ranges::count(updates, "zaru") > 0)
+    constraints.heading_hold_sd =
+        geo::kDegree * map.number_within("zaru_sd_deg_rts", study::kCarHeadingHoldSd / geo::kDegree, 1e-6, 1.0);
   if (std::ranges::count(updates, "nhc") == 0) return;
   estimate::NonHolonomic nhc;
   nhc.point_b = map.vector3("nhc_point_m", Eigen::Vector3d::Zero());
@@ -296,6 +301,7 @@ RunConfig read_run_config(const std::filesystem::path& file) {
     if (run.tight) throw effects->error("effects of a tightly coupled run", "positions: they are taken out of fixes");
     run.effects = read_effects(*effects);
   }
+  if (const auto aids = root.find("aids")) run.aids = read_aids(*aids);
   read_outages(root, run);
   read_smoother(root, run);
   read_output(root, run);

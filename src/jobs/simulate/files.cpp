@@ -21,6 +21,11 @@ std::string axis_name(const Eigen::Vector3d& row) {
   return fmt::format("{}{}", row(axis) < 0.0 ? "-" : "", "xyz"[axis]);
 }
 
+std::string aid_file(const simulate::Scenario& scenario, std::size_t index) {
+  return scenario.aids.size() == 1 ? scenario.aids[index].name() + ".csv"
+                                   : fmt::format("{}_{}.csv", scenario.aids[index].name(), index + 1);
+}
+
 // The run.yaml that processes the recording, in the same folder.
 std::string run_yaml(const simulate::Scenario& scenario, const simulate::SimulatedMission& mission, const std::string& gnss) {
   const Eigen::Matrix3d& axes = scenario.mounting.axes;
@@ -38,6 +43,10 @@ std::string run_yaml(const simulate::Scenario& scenario, const simulate::Simulat
       "reference: {{file: truth.nav, format: nav}}\n",
       scenario.start.week(), list(scenario.gnss.lever_arm_b), axis_name(axes.row(0)), axis_name(axes.row(1)),
       axis_name(axes.row(2)), list(scenario.mounting.mounting / geo::kDegree), gnss);
+  if (!scenario.aids.empty()) text += "aids:\n";
+  for (std::size_t k = 0; k < scenario.aids.size(); ++k)
+    text += fmt::format("  - {{kind: {}, file: {}, {}}}\n", scenario.aids[k].name(), aid_file(scenario, k),
+                        scenario.aids[k].run_keys());
   if (mission.outages.empty()) return text;
   text += "outages:\n";
   for (const simulate::StudiedOutage& outage : mission.outages)
@@ -89,6 +98,7 @@ std::vector<std::string> files_of(const SimulationConfig& config) {
   const simulate::Scenario& scenario = config.scenario;
   std::vector<std::string> files{"imu.csv", "gnss.pos", "truth.nav", "error_model.yaml", "run.yaml"};
   if (scenario.observations) files.insert(files.end(), {"rover.obs", "base.obs", "brdc.nav", "run-rinex.yaml"});
+  for (std::size_t k = 0; k < scenario.aids.size(); ++k) files.push_back(aid_file(scenario, k));
   if (scenario.array.empty()) return files;
   for (const simulate::Scenario::ArrayImu& imu : scenario.array)
     files.insert(files.end(), {fmt::format("imu_{}.csv", imu.name), fmt::format("error_model_{}.yaml", imu.name)});
@@ -108,6 +118,8 @@ void write(const SimulationConfig& config, const SimulationResult& result, const
   io::write_text(folder / "error_model.yaml", scenario.error_model->yaml());
   if (result.observations) write_observations(scenario, mission, *result.observations, folder);
   write_array(scenario, result.array, folder);
+  for (std::size_t k = 0; k < scenario.aids.size(); ++k)
+    io::write_aid_csv(folder / aid_file(scenario, k), result.aids[k], scenario.aids[k].column());
   io::write_text(folder / "run.yaml", run_yaml(scenario, mission, positions_yaml(scenario)));
 }
 

@@ -21,7 +21,7 @@ SimulationResult simulate(const SimulationConfig& config, const Progress& progre
   const simulate::Scenario& scenario = config.scenario;
   const auto threads = static_cast<int>(tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism));
   progress("simulating", 0.0);
-  SimulationResult result{simulate::simulate(scenario, threads), {}, {}};
+  SimulationResult result{simulate::simulate(scenario, threads), {}, {}, {}};
   if (scenario.observations) {
     progress("simulating observations", 0.0);
     result.observations = simulate::simulate_observations(simulate::make_motion(scenario.kind, scenario.motion), scenario.start,
@@ -29,6 +29,10 @@ SimulationResult simulate(const SimulationConfig& config, const Progress& progre
   }
   for (std::size_t k = 0; k < scenario.array.size(); ++k)
     result.array.push_back(simulate::simulate_array_imu(scenario, k, threads));
+  if (scenario.aids.empty()) return result;
+  const simulate::AnalyticTrajectory motion = simulate::make_motion(scenario.kind, scenario.motion);
+  for (std::size_t k = 0; k < scenario.aids.size(); ++k)
+    result.aids.push_back(simulate::aid_rows(motion, scenario.start, scenario.aids[k], scenario.seed, k));
   return result;
 }
 

@@ -172,6 +172,13 @@ report::Series stretches(const ProcessPage& page, const std::vector<geo::GpsTime
   return series;
 }
 
+std::vector<geo::GpsTime> aid_times(const ProcessPage& page, std::size_t aid, bool used) {
+  std::vector<geo::GpsTime> times;
+  for (const InnovationRecord& r : page.result.innovations)
+    if (r.kind == UpdateKind::kAid && r.aid == aid && r.used == used) times.push_back(r.t);
+  return times;
+}
+
 report::Panel update_panel(const ProcessPage& page) {
   report::Panel panel = report::time_panel("updates", "Updates by epoch", "",
                                            "GNSS throughout, zero velocity at stops; refused fixes are single and rare.");
@@ -192,6 +199,11 @@ report::Panel update_panel(const ProcessPage& page) {
   add("withheld", report::Tone::kMuted, false, withheld_fixes(page));
   add("velocity refused", report::Tone::kWarn, true, times_of(UpdateKind::kGnssVelocity, false));
   add("position refused", report::Tone::kBad, true, times_of(UpdateKind::kGnssPosition, false));
+  for (std::size_t a = 0; a < page.result.aids.size(); ++a) {
+    add(page.result.aids[a].name + " refused", report::Tone::kWarn, true, aid_times(page, a, false));
+    add(page.result.aids[a].name, report::Tone::kY, false, aid_times(page, a, true));
+  }
+  add("heading held", report::Tone::kSbas, false, times_of(UpdateKind::kHeadingHold, true));
   add("non-holonomic", report::Tone::kDgps, false, times_of(UpdateKind::kNonHolonomic, true));
   add("zero velocity", report::Tone::kSbas, false, times_of(UpdateKind::kZeroVelocity, true));
   add("GNSS velocity", report::Tone::kPpp, false, times_of(UpdateKind::kGnssVelocity, true));
@@ -254,6 +266,7 @@ std::optional<report::Section> innovation_section(const ProcessPage& page) {
     section.panels.push_back(nis_panel(page, positions, velocities));
     section.panels.push_back(histogram_panel(positions, velocities));
   }
+  add_aids(page, section);
   section.panels.push_back(update_panel(page));
   return section;
 }

@@ -32,6 +32,9 @@ namespace coast::jobs {
 void add_sweep(const ProcessPage& page, report::Section& section);
 /// Noise fitted by innovation likelihood: table and text.
 void add_noise_fit(const ProcessPage& page, report::Section& section);
+/// Innovations and counts of aiding sensors.
+void add_aids(const ProcessPage& page, report::Section& section);
+
 // --- times
 
 [[nodiscard]] double seconds_since_start(const ProcessPage& page, geo::GpsTime t);

@@ -71,6 +71,9 @@ constexpr Auxiliary kAuxiliaries[] = {
     {"vehicle_mounting", "Vehicle against body", "deg", {"pitch", "yaw", ""}},
     {"base_offset", "Offset of all GNSS positions", "m", {"x (ECEF)", "y (ECEF)", "z (ECEF)"}},
     {"gnss_error_horizontal", "Correlated GNSS error, horizontal", "m", {"N", "E", ""}},
+    {"odometer", "Odometer scale, beside the one that was stated or found", "ppm", {"scale", "second", "third"}},
+    {"heading", "Heading sensor, measured minus true", "deg", {"offset", "second", "third"}},
+    {"height", "Height sensor, measured minus true", "m", {"offset", "drift", "second"}},
     {"gnss_error_vertical", "Correlated GNSS error, vertical", "m", {"D", "", ""}},
 };
 

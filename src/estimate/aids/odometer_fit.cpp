@@ -1,0 +1,153 @@
+#include "odometer_fit.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace coast::estimate {
+
+namespace {
+
+struct Stretch {
+  geo::GpsTime from;
+  geo::GpsTime to;
+  double chord = 0.0;
+};
+
+constexpr std::size_t kFewest = 30;                // stretches in motion
+constexpr std::size_t kMost = 4000;                // more determine no more
+constexpr double kInMotion = 2.0;                  // m/s
+constexpr double kShortest = 0.8, kLongest = 2.5;  // s: noise of fixes against the curvature of the path
+
+std::vector<Stretch> stretches_in_motion(const record::GnssRecording& gnss) {
+  std::vector<Stretch> found;
+  const std::vector<record::GnssFix>& fixes = gnss.fixes;
+  for (std::size_t from = 0, to = 0; from < fixes.size(); from = to) {
+    for (to = from + 1; to < fixes.size() && fixes[to].t - fixes[from].t < kShortest; ++to) {
+    }
+    if (to == fixes.size()) break;
+    const double span = fixes[to].t - fixes[from].t;
+    const double chord = (fixes[to].r_ea_e - fixes[from].r_ea_e).norm();
+    if (span <= kLongest && chord > kInMotion * span) found.push_back({fixes[from].t, fixes[to].t, chord});
+  }
+  if (found.size() <= kMost) return found;
+  std::vector<Stretch> some;
+  for (std::size_t i = 0; i < kMost; ++i) some.push_back(found[i * found.size() / kMost]);
+  return some;
+}
+
+double median(std::vector<double> values) {
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
+
+struct Agreement {
+  double scale = 1.0;
+  double cost = std::numeric_limits<double>::infinity();  ///< mean absolute difference, each limited, m
+  std::size_t stretches = 0;
+};
+
+Agreement agreement_at(const TravelledDistance& distance, const std::vector<Stretch>& stretches, double delay,
+                       std::optional<double> scale) {
+  std::vector<double> chords, driven, ratios;
+  for (const Stretch& stretch : stretches) {
+    const std::optional<double> d = distance.between(stretch.from + delay, stretch.to + delay);
+    if (!d || !(*d > 0.0)) continue;
+    chords.push_back(stretch.chord);
+    driven.push_back(*d);
+    ratios.push_back(stretch.chord / *d);
+  }
+  Agreement result;
+  result.stretches = chords.size();
+  if (chords.size() < kFewest) return result;
+  result.scale = scale ? *scale : median(ratios);
+  constexpr double kLimit = 4.0;  // times the median: gross errors and slip, whose number is all that may count
+  std::vector<double> differences;
+  for (std::size_t i = 0; i < chords.size(); ++i) differences.push_back(std::abs(chords[i] - result.scale * driven[i]));
+  const double limit = kLimit * median(differences);
+  double sum = 0.0;
+  for (const double difference : differences) sum += std::min(difference, limit);
+  result.cost = sum / static_cast<double>(chords.size());
+  return result;
+}
+
+// Minimum of the parabola through three equidistant values, in steps from the middle one.
+double vertex(double before, double at, double after) {
+  const double curvature = before - 2.0 * at + after;
+  return curvature > 0.0 ? std::clamp(0.5 * (before - after) / curvature, -1.0, 1.0) : 0.0;
+}
+
+// Steps from coarse to fine about the best delay so far; the parabola is for the last digit.
+double delay_of(const TravelledDistance& distance, const std::vector<Stretch>& stretches, std::optional<double> scale) {
+  double best = 0.0, between = 0.0;
+  for (const double step : {0.05, 0.01, 0.002}) {
+    const int steps = step == 0.05 ? 20 : 6;  // first a second either way
+    const double centre = best;
+    std::vector<double> cost;
+    for (int i = -steps; i <= steps; ++i) cost.push_back(agreement_at(distance, stretches, centre + i * step, scale).cost);
+    const auto least = std::ranges::min_element(cost);
+    best = centre + step * static_cast<double>(least - cost.begin() - steps);
+    const bool inside = least != cost.begin() && least != cost.end() - 1;
+    between = inside ? step * vertex(*(least - 1), *least, *(least + 1)) : 0.0;
+  }
+  return best + between;
+}
+
+TravelledDistance accumulated(const record::AidRecording& rows,
+                              double (*over)(const record::AidSample&, const record::AidSample&)) {
+  TravelledDistance result;
+  double distance = 0.0, gaps = 0.0;
+  for (std::size_t i = 0; i < rows.samples.size(); ++i) {
+    if (i > 0) {
+      const double step = over(rows.samples[i - 1], rows.samples[i]);
+      if (step < 0.0 || rows.samples[i].t - rows.samples[i - 1].t > kLongestOdometerGap)
+        gaps += 1.0;
+      else
+        distance += step;
+    }
+    result.t.push_back(rows.samples[i].t);
+    result.distance.push_back(distance);
+    result.bridged.push_back(gaps);
+  }
+  return result;
+}
+
+}  // namespace
+
+std::optional<double> TravelledDistance::between(geo::GpsTime from, geo::GpsTime to) const {
+  if (t.size() < 2 || from < t.front() || t.back() < to) return std::nullopt;
+  const auto before = [this](geo::GpsTime at) {
+    const auto after = std::upper_bound(t.begin() + 1, t.end() - 1, at);
+    return static_cast<std::size_t>(after - t.begin()) - 1;
+  };
+  const std::size_t a = before(from), b = before(to);
+  if (bridged[a] != bridged[b + 1]) return std::nullopt;
+  const auto value = [this](std::size_t i, geo::GpsTime at) {
+    return distance[i] + (distance[i + 1] - distance[i]) * ((at - t[i]) / (t[i + 1] - t[i]));
+  };
+  return value(b, to) - value(a, from);
+}
+
+TravelledDistance distance_by_speed(const record::AidRecording& rows) {
+  return accumulated(rows, [](const record::AidSample& a, const record::AidSample& b) {
+    return 0.5 * (std::abs(a.value.x()) + std::abs(b.value.x())) * (b.t - a.t);
+  });
+}
+
+TravelledDistance distance_by_count(const record::AidRecording& rows) {
+  return accumulated(rows, [](const record::AidSample& a, const record::AidSample& b) { return b.value.x() - a.value.x(); });
+}
+
+OdometerFit fit_odometer(const TravelledDistance& distance, const record::GnssRecording& gnss, std::optional<double> scale,
+                         std::optional<double> delay_s) {
+  OdometerFit fit{false, scale.value_or(1.0), delay_s.value_or(0.0), 0};
+  if (scale && delay_s) return fit;
+  const std::vector<Stretch> stretches = stretches_in_motion(gnss);
+  const double delay = delay_s ? *delay_s : delay_of(distance, stretches, scale);
+  const Agreement found = agreement_at(distance, stretches, delay, scale);
+  if (found.stretches < kFewest) return fit;
+  return {true, found.scale, delay, found.stretches};
+}
+
+}  // namespace coast::estimate
