@@ -34,13 +34,14 @@ def run(name):
     yaml.write_text(text)
     subprocess.run([coast, "process", yaml, "--out", out / name, "--quiet"], check=True)
     summary = json.loads((out / name / "summary.json").read_text())
-    numbers = {"horizontal_rms_m": summary["reference"]["smoothed"]["horizontal_rms_m"] if "horizontal_rms_m" in summary["reference"]["smoothed"] else None}
+    numbers = {"position_rms_m": summary["reference"]["smoothed"]["position_rms_m"], "attitude_rms_deg": summary["reference"]["smoothed"]["attitude_rms_deg"]}
     for row in summary["outage_sweep"]:
-        drift = {key: {"median": row[f"{key}_horizontal_max"]["median"], "max": row[f"{key}_horizontal_max"]["max"]} for key in ("forward", "smoothed")}
-        numbers[f"{row['duration_s']:g}_s"] = {**drift, "inside_95": row["smoothed_share_inside_95"]}
+        numbers[f"{row['duration_s']:g}_s"] = {"inside_95": row["smoothed_share_inside_95"]}
+        for key in ("forward", "smoothed"):
+            numbers[f"{row['duration_s']:g}_s"][key] = {of: row[f"{key}_horizontal_max"][of] for of in ("median_m", "max_m")}
     for aid in summary.get("aids", []):
         numbers[aid["name"]] = {"used": aid["used"], "refused": aid["refused"], "nis": aid["nis"]["mean"]}
-    return {key: value for key, value in numbers.items() if value is not None}
+    return numbers
 
 
 numbers = {name: run(name) for name in VARIANTS}
