@@ -98,7 +98,8 @@ TEST_F(SimulatedAids, WhatIsWrongInTheRunFileIsNamed) {
   EXPECT_NE(refusal("aids: [{kind: odometer, file: odometer_1.csv, sigma: 3}]\n").find("sigma"), std::string::npos);
   EXPECT_NE(refusal("aids: [{kind: odometer, file: none.csv}]\n").find("none.csv"), std::string::npos);
   EXPECT_NE(refusal("aids: [{kind: baseline, file: odometer_1.csv}]\n").find("baseline_m"), std::string::npos);
-  EXPECT_NE(refusal("aids: [{kind: height, file: height_4.csv, unit: hPa}]\n").find("hPa"), std::string::npos);
+  io::write_text(folder_.path() / "high.csv", "gps_week,sow_s,height_m\n2374,208850,1500\n");
+  EXPECT_NE(refusal("aids: [{kind: height, file: high.csv, unit: hPa}]\n").find("1500 hPa"), std::string::npos);
   // Samples of another day.
   io::write_text(folder_.path() / "later.csv", "gps_week,sow_s,speed_mps\n2374,300000,5\n2374,300001,5\n");
   EXPECT_NE(refusal("aids: [{kind: odometer, file: later.csv}]\n").find("no sample of the odometer"), std::string::npos);
