@@ -44,7 +44,7 @@ double median(std::vector<double> values) {
 
 struct Agreement {
   double scale = 1.0;
-  double cost = std::numeric_limits<double>::infinity();  ///< mean absolute difference, each limited, m
+  double cost = std::numeric_limits<double>::infinity();  ///< mean squared difference, each limited, m^2
   std::size_t stretches = 0;
 };
 
@@ -67,7 +67,7 @@ Agreement agreement_at(const TravelledDistance& distance, const std::vector<Stre
   for (std::size_t i = 0; i < chords.size(); ++i) differences.push_back(std::abs(chords[i] - result.scale * driven[i]));
   const double limit = kLimit * median(differences);
   double sum = 0.0;
-  for (const double difference : differences) sum += std::min(difference, limit);
+  for (const double difference : differences) sum += std::pow(std::min(difference, limit), 2);
   result.cost = sum / static_cast<double>(chords.size());
   return result;
 }
@@ -81,7 +81,7 @@ double vertex(double before, double at, double after) {
 // Steps from coarse to fine about the best delay so far; the parabola is for the last digit.
 double delay_of(const TravelledDistance& distance, const std::vector<Stretch>& stretches, std::optional<double> scale) {
   double best = 0.0, between = 0.0;
-  for (const double step : {0.05, 0.01, 0.002}) {
+  for (const double step : {0.05, 0.01}) {
     const int steps = step == 0.05 ? 20 : 6;  // first a second either way
     const double centre = best;
     std::vector<double> cost;
