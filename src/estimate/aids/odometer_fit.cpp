@@ -72,26 +72,41 @@ Agreement agreement_at(const TravelledDistance& distance, const std::vector<Stre
   return result;
 }
 
-// Minimum of the parabola through three equidistant values, in steps from the middle one.
-double vertex(double before, double at, double after) {
-  const double curvature = before - 2.0 * at + after;
-  return curvature > 0.0 ? std::clamp(0.5 * (before - after) / curvature, -1.0, 1.0) : 0.0;
+// Minimum of the parabola through values at -n, .., n steps, by least squares; within n/2 steps.
+double vertex(const std::vector<double>& y) {
+  const auto n = static_cast<double>(y.size() / 2);
+  double s_y = 0.0, s_sy = 0.0, s_ssy = 0.0, s_ss = 0.0, s_ssss = 0.0;
+  for (std::size_t i = 0; i < y.size(); ++i) {
+    const double s = static_cast<double>(i) - n;
+    s_y += y[i];
+    s_sy += s * y[i];
+    s_ssy += s * s * y[i];
+    s_ss += s * s;
+    s_ssss += s * s * s * s;
+  }
+  const auto count = static_cast<double>(y.size());
+  const double curvature = (count * s_ssy - s_ss * s_y) / (count * s_ssss - s_ss * s_ss);
+  return curvature > 0.0 ? std::clamp(-0.5 * s_sy / s_ss / curvature, -0.5 * n, 0.5 * n) : 0.0;
 }
 
-// Steps from coarse to fine about the best delay so far; the parabola is for the last digit.
+// First the best step within a second, then parabolas about it. They are as wide as they are because the rounding of pulses
+// is other noise at each delay.
 double delay_of(const TravelledDistance& distance, const std::vector<Stretch>& stretches, std::optional<double> scale) {
-  double best = 0.0, between = 0.0;
-  for (const double step : {0.05, 0.01}) {
-    const int steps = step == 0.05 ? 20 : 6;  // first a second either way
-    const double centre = best;
+  const auto costs = [&](double centre, double step, int steps) {
     std::vector<double> cost;
     for (int i = -steps; i <= steps; ++i) cost.push_back(agreement_at(distance, stretches, centre + i * step, scale).cost);
-    const auto least = std::ranges::min_element(cost);
-    best = centre + step * static_cast<double>(least - cost.begin() - steps);
-    const bool inside = least != cost.begin() && least != cost.end() - 1;
-    between = inside ? step * vertex(*(least - 1), *least, *(least + 1)) : 0.0;
+    return cost;
+  };
+  constexpr double kCoarse = 0.05, kFine = 0.01;  // s
+  constexpr int kCoarseSteps = 20, kFineSteps = 10;
+  const std::vector<double> coarse = costs(0.0, kCoarse, kCoarseSteps);
+  const auto least = std::ranges::min_element(coarse) - coarse.begin();
+  double best = kCoarse * static_cast<double>(least - kCoarseSteps);
+  for (int round = 0; round < 2; ++round) {
+    const std::vector<double> fine = costs(best, kFine, kFineSteps);
+    if (std::isfinite(*std::ranges::max_element(fine))) best += kFine * vertex(fine);
   }
-  return best + between;
+  return best;
 }
 
 TravelledDistance accumulated(const record::AidRecording& rows,
