@@ -9,27 +9,12 @@
 
 #include "coast/geo/rotation.hpp"
 #include "coast/geo/units.hpp"
+#include "state_columns.hpp"
 #include "text_buffer.hpp"
 
 namespace coast::io {
 
 namespace {
-
-/// Position, velocity and attitude as in files.
-struct LocalState {
-  geo::Geodetic p;
-  Eigen::Vector3d v_eb_n;
-  geo::Euler attitude;
-};
-
-LocalState local_state(const record::NavState& nav) {
-  LocalState s;
-  s.p = geo::geodetic_from_ecef(nav.r_eb_e);
-  const Eigen::Matrix3d C_e_n = geo::C_n_e(s.p).transpose();
-  s.v_eb_n = C_e_n * nav.v_eb_e;
-  s.attitude = geo::euler_from_dcm(C_e_n * nav.q_b_e.toRotationMatrix());
-  return s;
-}
 
 class NavWriter final : public TrajectoryWriter {
  public:
@@ -66,32 +51,17 @@ class NavWriter final : public TrajectoryWriter {
   TextBuffer text_;
 };
 
-constexpr std::string_view kCsvHeader =
-    "gps_week,sow_s,lat_deg,lon_deg,height_m,vn_mps,ve_mps,vd_mps,roll_deg,pitch_deg,yaw_deg,"
-    "sdn_m,sde_m,sdd_m,corr_ne,corr_nd,corr_ed,"
-    "sdvn_mps,sdve_mps,sdvd_mps,corr_vn_ve,corr_vn_vd,corr_ve_vd,"
-    "sd_roll_deg,sd_pitch_deg,sd_yaw_deg,corr_roll_pitch,corr_roll_yaw,corr_pitch_yaw";
-
 class CsvWriter final : public TrajectoryWriter {
  public:
   explicit CsvWriter(const std::filesystem::path& path) : file_(path), text_(file_) {
-    text_.put(kCsvHeader);
-    text_.end_line();
+    text_.put(fmt::format("{},{},{}\n", kTimeAndPlaceColumns, kMotionColumns, kCovarianceColumns));
   }
 
   void write(const record::TrajectoryEpoch& epoch) override {
     const LocalState s = local_state(epoch.nav);
-    text_.put_integer(epoch.nav.t.week());
-    comma_fixed(epoch.nav.t.sow(), 9);
-    comma_fixed(s.p.latitude / geo::kDegree, 11);
-    comma_fixed(s.p.longitude / geo::kDegree, 11);
-    comma_fixed(s.p.height, 5);
-    for (const double v : s.v_eb_n) comma_fixed(v, 6);
-    for (const double angle : {s.attitude.roll, s.attitude.pitch, s.attitude.yaw}) comma_fixed(angle / geo::kDegree, 9);
-    put_covariance(epoch.cov.position, 1.0, 6);
-    put_covariance(epoch.cov.velocity, 1.0, 7);
-    const Eigen::Matrix3d J = geo::euler_jacobian(s.attitude);
-    put_covariance(J * epoch.cov.attitude * J.transpose(), 1.0 / geo::kDegree, 8);
+    put_time_and_place(text_, epoch.nav.t, s.p);
+    put_motion(text_, s);
+    put_covariance(text_, epoch.cov, s.attitude);
     text_.end_line();
   }
   void close() override {
@@ -100,19 +70,6 @@ class CsvWriter final : public TrajectoryWriter {
   }
 
  private:
-  void comma_fixed(double value, int decimals) {
-    text_.put(',');
-    text_.put_fixed(value, decimals);
-  }
-  void put_covariance(const Eigen::Matrix3d& cov, double unit, int decimals) {
-    const Eigen::Vector3d sd = cov.diagonal().cwiseMax(0.0).cwiseSqrt();
-    for (const double s : sd) comma_fixed(s * unit, decimals);
-    for (const auto& [i, j] : {std::pair{0, 1}, {0, 2}, {1, 2}}) {
-      const double product = sd[i] * sd[j];
-      comma_fixed(product > 0.0 ? cov(i, j) / product : 0.0, 6);
-    }
-  }
-
   AtomicFile file_;
   TextBuffer text_;
 };

@@ -13,6 +13,7 @@
 #include "coast/io/noise_levels.hpp"
 #include "coast/record/error.hpp"
 #include "common/tell.hpp"
+#include "run_file/run_events.hpp"
 
 namespace coast::jobs {
 
@@ -76,6 +77,7 @@ Recordings load(const RunConfig& config, const Progress& progress) {
   check_leap_seconds(config.imu.time, recordings.imu.source, recordings.imu.samples.back().t, recordings.inspection_events);
   check_leap_seconds(config.gnss.time, recordings.gnss.source, recordings.gnss.fixes.back().t, recordings.inspection_events);
   if (config.reference) recordings.reference = io::read_reference(*config.reference, recordings.imu.samples.front().t);
+  if (config.events) recordings.marks = read_named_marks(*config.events, recordings.imu.samples.front().t);
   return recordings;
 }
 
@@ -85,6 +87,7 @@ void tell_inspection(const Recordings& recordings, const Progress& progress) {
   tell_warnings(recordings.imu.events, progress);
   tell_warnings(recordings.gnss.events, progress);
   if (recordings.reference) tell_warnings(recordings.reference->events, progress);
+  if (recordings.marks) tell_warnings(recordings.marks->events, progress);
   tell_warnings(recordings.inspection_events, progress);
 }
 

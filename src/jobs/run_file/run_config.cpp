@@ -12,6 +12,7 @@
 #include "common/keys.hpp"
 #include "run_file/run_config.hpp"
 #include "run_file/run_effects.hpp"
+#include "run_file/run_events.hpp"
 
 namespace coast::jobs {
 
@@ -299,6 +300,7 @@ RunConfig read_run_config(const std::filesystem::path& file) {
   read_outages(root, run);
   read_smoother(root, run);
   read_output(root, run);
+  if (const auto events = root.find("events")) run.events = read_events(*events);
   root.refuse_unasked();
   return run;
 }
