@@ -50,9 +50,12 @@ struct TrajectoryFiles::Files {
 TrajectoryFiles::TrajectoryFiles(const RunConfig& config, const std::filesystem::path& folder)
     : files_(std::make_unique<Files>(config.output)) {
   files_->folder = folder;
+  io::WriterOptions options;
+  options.geoid_height_m = geoid_height(config);
   for (const std::string& format : config.output.formats) {
-    if (format == "nav") files_->forward_writers.push_back(io::make_nav_writer(folder / "forward.nav"));
-    files_->writers.push_back(io::make_trajectory_writer(format, folder / "trajectory", geoid_height(config)));
+    const io::TrajectoryFormat& how = io::trajectory_format(format);
+    if (format == "nav") files_->forward_writers.push_back(how.make(folder / "forward.nav", options));
+    files_->writers.push_back(how.make(folder / fmt::format("trajectory.{}", format), options));
   }
 }
 

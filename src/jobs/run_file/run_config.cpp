@@ -150,14 +150,14 @@ void read_output(const Node& root, RunConfig& run) {
   if (const auto rate = output->find("rate_hz")) run.output.rate_hz = output->number_within("rate_hz", 0.0, 1e-3, 1e5);
   if (const auto formats = output->find("formats")) {
     std::vector<std::string>& wanted = run.output.formats;
+    std::vector<std::string_view> known;
+    for (const io::TrajectoryFormat& format : io::trajectory_formats()) known.push_back(format.name);
     wanted.clear();
     for (const Node& item : formats->items()) {
-      const auto& known = io::trajectory_formats();
-      if (std::ranges::find(known, item.text()) == known.end())
-        throw item.error("output format " + item.text(), "one of nav, csv, sbet, pos, kml");
+      static_cast<void>(item.choice(known));
       if (std::ranges::find(wanted, item.text()) == wanted.end()) wanted.push_back(item.text());
     }
-    if (wanted.empty()) throw formats->error("no format", "at least one of nav, csv, sbet, pos, kml");
+    if (wanted.empty()) throw formats->error("no format", fmt::format("at least one of {}", fmt::join(known, ", ")));
   }
   run.output.point_b = output->vector3("point_m", Eigen::Vector3d::Zero());
 }
