@@ -163,7 +163,7 @@ TEST(Events, KeysThatAreWrongNameTheirLine) {
   write(drive() / "images.csv", "image,sow,lat,lon,h\na,1,2,3,4\n");
   for (const auto& [keys, says] : {std::pair<const char*, const char*>{"  delay: 0.1\n", "delay_s"},
                                    {"  delay_s: 12\n", "-10"},
-                                   {"  delay_s: soon\n", "a number"},
+                                   {"  delay_s: soon\n", "a finite number"},
                                    {"  camera: {lever_arm: [0, 0, 0]}\n", "lever_arm_m"},
                                    {"  camera: {lever_arm_m: [0, 0]}\n", "three"},
                                    {"  camera: {boresight_deg: [0, 100, 0]}\n", "pitch in [-90, 90]"},

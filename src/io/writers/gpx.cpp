@@ -56,7 +56,8 @@ class GpxWriter final : public TrajectoryWriter {
     text_.put("\"><ele>");
     text_.put_fixed(p.height - geoid_height_.value_or(0.0), 4);
     text_.put(fmt::format("</ele><time>{}</time>", utc_text(point.t)));
-    if (geoid_height_) text_.put(fmt::format("<geoidheight>{:.3f}</geoidheight>", *geoid_height_));
+    // 0: heights of the trajectory are above the geoid themselves, and its own height is not known.
+    if (geoid_height_.value_or(0.0) != 0.0) text_.put(fmt::format("<geoidheight>{:.3f}</geoidheight>", *geoid_height_));
     if (const std::string_view fix = gpx_fix(quality.id); !fix.empty()) text_.put(fmt::format("<fix>{}</fix>", fix));
     text_.put("</trkpt>");
     text_.end_line();
