@@ -5,6 +5,7 @@
 #include "coast/jobs/array_study.hpp"
 #include "coast/jobs/calibrate.hpp"
 #include "coast/jobs/compare.hpp"
+#include "coast/jobs/convert.hpp"
 #include "coast/jobs/diagnose.hpp"
 #include "coast/jobs/estimator_study.hpp"
 #include "coast/jobs/file_kind.hpp"
@@ -139,6 +140,16 @@ void compare(const std::filesystem::path& first, const std::filesystem::path& se
   const jobs::ComparisonResult result = jobs::compare(config, on_terminal(line, options.quiet));
   if (!options.out.empty()) jobs::write(config, result, jobs::results_folder(first, options.out, jobs::files_of(config)));
   if (!options.quiet) fmt::print("{}", jobs::told(config, result, options.out));
+}
+
+void convert(const std::filesystem::path& input, const std::filesystem::path& output, const ConvertOptions& choice,
+             const CommonOptions& options) {
+  ProgressLine line(options.quiet);
+  jobs::ConvertConfig config = jobs::read_convert(input, output, choice.format);
+  config.gps_week = choice.gps_week;
+  config.rate_hz = choice.rate_hz;
+  config.geoid_height_m = choice.geoid_height_m;
+  finish(config, jobs::convert(config, on_terminal(line, options.quiet)), output.parent_path(), line, options.quiet);
 }
 
 void inspect(const std::filesystem::path& file, std::optional<int> gps_week, const CommonOptions& options) {

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <optional>
+#include <string>
 
 #include <Eigen/Core>
 
@@ -31,6 +32,14 @@ struct DiagnoseOptions {
 };
 void diagnose(const std::filesystem::path& run_yaml, const DiagnoseOptions& choice, const CommonOptions& options);
 void compare(const std::filesystem::path& first, const std::filesystem::path& second, const Eigen::Vector3d& lever_arm_b,
+             const CommonOptions& options);
+struct ConvertOptions {
+  std::string format;  ///< empty: by the extension
+  std::optional<int> gps_week;
+  std::optional<double> rate_hz;
+  std::optional<double> geoid_height_m;
+};
+void convert(const std::filesystem::path& input, const std::filesystem::path& output, const ConvertOptions& choice,
              const CommonOptions& options);
 /// Prints what is in a file.
 void inspect(const std::filesystem::path& file, std::optional<int> gps_week, const CommonOptions& options);

@@ -8,6 +8,7 @@
 
 #include "coast/jobs/array_study.hpp"
 #include "coast/jobs/calibrate.hpp"
+#include "coast/jobs/convert.hpp"
 #include "coast/jobs/estimator_study.hpp"
 #include "coast/jobs/file_kind.hpp"
 #include "coast/jobs/ppk.hpp"
@@ -137,6 +138,22 @@ void add_compare(CLI::App& app, std::filesystem::path& first, std::filesystem::p
   });
 }
 
+void add_convert(CLI::App& app, std::filesystem::path& input, std::filesystem::path& output, coast::cli::ConvertOptions& choice,
+                 CommonOptions& common) {
+  auto* convert = app.add_subcommand("convert", "a trajectory in another format");
+  convert->add_option("trajectory", input, ".nav, CSV or SBET")->required();
+  convert->add_option("output", output, "the file to write; its extension names the format")->required();
+  convert->add_option("--to", choice.format, "format, where the extension is another");
+  convert->add_option("--gps-week", choice.gps_week, "of files with seconds of week only")->check(CLI::Range(1, 9999));
+  convert->add_option("--rate", choice.rate_hz, "Hz (default: every epoch)")->check(CLI::Range(1e-3, 1e5));
+  convert->add_option("--geoid-height", choice.geoid_height_m, "geoid above the ellipsoid, m, for heights above mean sea level")
+      ->check(CLI::Range(-120.0, 120.0));
+  convert->add_flag("--quiet", common.quiet, "only warnings and errors");
+  convert->footer("Example:\n  coast convert results/trajectory.nav trajectory.gpx --rate 1\n\nFormats:\n" +
+                  coast::jobs::convert_formats("  "));
+  convert->callback([&] { coast::cli::convert(input, output, choice, common); });
+}
+
 void add_inspect(CLI::App& app, std::filesystem::path& input, std::optional<int>& gps_week) {
   auto* inspect = app.add_subcommand("inspect", "what is in a file: kind, span, rates, satellites and signals, gaps, damage");
   inspect->add_option("file", input, "a recording of an IMU or of GNSS, RINEX, or a trajectory")->required();
@@ -204,6 +221,9 @@ int run(int argc, char** argv) {
   add_synth(app, input, common);
 
   add_compare(app, input, other, lever_arm, common);
+
+  coast::cli::ConvertOptions convert_choice;
+  add_convert(app, input, other, convert_choice, common);
 
   std::optional<int> gps_week;
   add_inspect(app, input, gps_week);

@@ -3,7 +3,6 @@
 #include <algorithm>
 
 #include "coast/io/rinex.hpp"
-#include "coast/io/time_marks.hpp"
 #include "registry_lookup.hpp"
 
 namespace coast::io {
@@ -42,7 +41,11 @@ class ContentsReader {
   void read_rinex() {
     contents_.format = "RINEX";
     contents_.observations = attempt([&] { return read_observations(file_); });
-    if (contents_.observations) return;
+    if (contents_.observations) {
+      if (!contents_.observations->marks.empty())
+        contents_.marks = record::TimeMarkRecording{contents_.source, contents_.observations->marks, {}};
+      return;
+    }
     contents_.navigation = attempt([&] { return read_navigation(file_); });
     if (contents_.navigation) contents_.refusals.clear();  // a file is of one kind
   }

@@ -209,6 +209,16 @@ void gnss_auto(std::string_view bytes) {
   gnss(bytes, {});
 }
 
+/// Events are read from tables of positions.
+void event_table(std::string_view bytes) {
+  io::TimeMarkFileOptions options = io::TimeMarkFileOptions::of_file(as_file(bytes));
+  options.time.kind = io::TimeKind::kUtc;
+  options.time_columns = {1};
+  options.id_column = 5;
+  options.position_columns = {2, 3, 4};
+  read_and_check([&] { return io::read_time_marks(options); });
+}
+
 void gnss_table(std::string_view bytes) {
   io::GnssFileOptions options;
   options.time.kind = io::TimeKind::kUtc;
@@ -218,6 +228,7 @@ void gnss_table(std::string_view bytes) {
   options.quality_column = 8;
   options.satellites_column = 9;
   gnss(bytes, options);
+  event_table(bytes);
 }
 
 void reference_auto(std::string_view bytes) {
@@ -228,6 +239,7 @@ void reference_auto(std::string_view bytes) {
 
 void rinex_observation(std::string_view bytes) {
   read_and_check([&] { return io::read_observations(as_file(bytes)); });
+  read_and_check([&] { return io::read_time_marks(io::TimeMarkFileOptions::of_file(as_file(bytes)), geo::GpsTime()); });
 }
 
 void rinex_navigation(std::string_view bytes) {
@@ -285,7 +297,7 @@ void ubx(std::string_view bytes) {
   both_of(bytes, "ubx");
   rinex_observation(bytes);  // both by content
   rinex_navigation(bytes);
-  read_and_check([&] { return io::read_time_marks(as_file(bytes)); });
+  read_and_check([&] { return io::read_time_marks(io::TimeMarkFileOptions::of_file(as_file(bytes))); });
 }
 
 void vectornav(std::string_view bytes) {

@@ -11,6 +11,7 @@
 #include "coast/io/gnss.hpp"
 #include "coast/io/imu.hpp"
 #include "coast/io/reference.hpp"
+#include "coast/io/time_marks.hpp"
 #include "coast/io/yaml.hpp"
 #include "support/support.hpp"
 
@@ -49,6 +50,10 @@ class Files {
   record::Trajectory reference(const std::string& name, const std::string& keys = "",
                                std::optional<geo::GpsTime> near = std::nullopt) const {
     return io::read_reference(io::ReferenceFileOptions::from(node("reference", name, keys)), near);
+  }
+  record::TimeMarkRecording events(const std::string& name, const std::string& keys = "",
+                                   std::optional<geo::GpsTime> near = std::nullopt) const {
+    return io::read_time_marks(io::TimeMarkFileOptions::from(node("events", name, keys)), near);
   }
 
  private:

@@ -70,7 +70,7 @@ void expect_same(const record::Trajectory& back, const std::vector<record::Traje
 TEST(Nav, ReadsBackWithinTheDigitsPrinted) {
   const auto epochs = random_epochs(200);
   const Files files;
-  write_all(*make_nav_writer(files.path("a.nav")), epochs);
+  write_all(*trajectory_format("nav").make(files.path("a.nav"), {}), epochs);
   const auto back = files.reference("a.nav");
   EXPECT_TRUE(back.has_attitude && back.has_velocity);
   // Half a digit: 1e-11 deg is 1.1 um, 1e-5 m, 1e-6 m/s; 1e-9 deg in three angles, sharpened near the vertical.
@@ -99,7 +99,7 @@ TEST(Nav, WeekZeroMeansNotStated) {
 TEST(TrajectoryCsv, ReadsBackAndKeepsTheCovariance) {
   const auto epochs = random_epochs(50);
   const Files files;
-  write_all(*make_csv_writer(files.path("a.csv")), epochs);
+  write_all(*trajectory_format("csv").make(files.path("a.csv"), {}), epochs);
   expect_same(files.reference("a.csv"), epochs, 1e-5, 2e-6, 1e-9);
   TableReader table(files.path("a.csv"));
   std::array<std::size_t, 6> slots{};
@@ -132,7 +132,7 @@ TEST(TrajectoryCsv, ReadsBackAndKeepsTheCovariance) {
 TEST(Sbet, ReadsBackExactlyWithItsUncertainty) {
   const auto epochs = random_epochs(40);
   const Files files;
-  write_all(*make_sbet_writer(files.path("a.sbet"), files.path("a.smrmsg")), epochs);
+  write_all(*trajectory_format("sbet").make(files.path("a.sbet"), {}), epochs);
   expect_same(files.reference("a.sbet", "", epochs[0].nav.t), epochs, 1e-7, 1e-11, 1e-11);
   const std::string sbet = files.get("a.sbet");
   const std::string smrmsg = files.get("a.smrmsg");
@@ -151,7 +151,7 @@ TEST(Sbet, ReadsBackExactlyWithItsUncertainty) {
   EXPECT_DOUBLE_EQ(record[2], std::sqrt(epochs[7].cov.position(1, 1)));
   EXPECT_DOUBLE_EQ(record[6], std::sqrt(epochs[7].cov.velocity(2, 2)));
   // Heading sigma in minutes of arc: the CSV has the same in degrees, checked there against finite differences.
-  write_all(*make_csv_writer(files.path("a.csv")), epochs);
+  write_all(*trajectory_format("csv").make(files.path("a.csv"), {}), epochs);
   TableReader table(files.path("a.csv"));
   const auto yaw = table.number_slot("sd_yaw_deg", "yaw");
   for (int i = 0; i <= 7; ++i) ASSERT_TRUE(table.next());

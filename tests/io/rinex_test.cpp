@@ -121,6 +121,40 @@ TEST(RinexObservation, EventsAndPowerFailures) {
   EXPECT_EQ(test::count_of(recording.events, "rinex_power_failure"), 1);
 }
 
+TEST(RinexObservation, OutsideEventsAreTimeMarks) {
+  const test::Files files;
+  std::string utc = header3();
+  utc.replace(utc.find(" GPS  "), 6, " GLO  ");
+  files.put("a.obs", utc + kEnd + epoch3("0.0000000", 1) + kG05 + epoch3("0.2500001", 0, '5') + epoch3("0.7500000", 1, '5') +
+                         header_line("shutter", "COMMENT") + epoch3("1.0000000", 1) + kG05 + epoch3("0.5000000", 0, '5') +
+                         ">                              5  0\n" + epoch3("2.0000000", 1) + kG05);
+  const auto recording = io::read_observations(files.path("a.obs"));
+  EXPECT_EQ(recording.epochs.size(), 3U);
+  ASSERT_EQ(recording.marks.size(), 3U);
+  const geo::GpsTime start = recording.epochs[0].t;
+  EXPECT_EQ(recording.marks[0].t, start + 0.2500001);
+  EXPECT_EQ(recording.marks[1].t, start + 0.5);  // in the order of time
+  EXPECT_EQ(recording.marks[2].t, start + 0.75);
+  EXPECT_EQ(test::count_of(recording.events, "rinex_spoiled"), 1);  // an outside event without a time
+  const auto marks = files.events("a.obs").marks;
+  ASSERT_EQ(marks.size(), 3U);
+  EXPECT_EQ(marks[2].t, start + 0.75);
+}
+
+TEST(RinexObservation, Version2HasTimeMarksToo) {
+  const test::Files files;
+  const std::string epoch = " 21  9 22  6 30 {:>10}  {}{:3}{}\n";
+  files.put("a.obs", header_line("     2.11           OBSERVATION DATA    G", "RINEX VERSION / TYPE") +
+                         header_line("     1    C1", "# / TYPES OF OBSERV") + kEnd +
+                         fmt::format(fmt::runtime(epoch), "0.0000000", 0, 1, "G05") + "  21243381.127\n" +
+                         fmt::format(fmt::runtime(epoch), "0.1234567", 5, 0, "") +
+                         fmt::format(fmt::runtime(epoch), "1.0000000", 0, 1, "G05") + "  21243381.127\n");
+  const auto recording = io::read_observations(files.path("a.obs"));
+  ASSERT_EQ(recording.epochs.size(), 2U);
+  ASSERT_EQ(recording.marks.size(), 1U);
+  EXPECT_EQ(recording.marks[0].t, recording.epochs[0].t + 0.1234567);
+}
+
 // RINEX 3.05, table A2: stored numbers are divided by the factor.
 TEST(RinexObservation, ScaleFactorsOfTypesOverTwoLinesAndOfAWholeSystem) {
   const auto scale = [](const std::string& text) { return header_line(text, "SYS / SCALE FACTOR"); };

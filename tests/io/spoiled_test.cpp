@@ -14,7 +14,7 @@ namespace {
 using test::Files;
 using test::refusal;
 
-enum class Kind { kImu, kGnss, kReference };
+enum class Kind { kImu, kGnss, kReference, kEvents };
 
 /// What is read, from what text, and what the message must contain ("%" stands for the file's name).
 struct Spoiled {
@@ -309,10 +309,41 @@ std::vector<Spoiled> receiver_files() {
   };
 }
 
+std::vector<Spoiled> event_files() {
+  const std::string mapped = "columns: {time: 1, id: 2}, gps_week: 2374";
+  const std::string rinex_header =
+      fmt::format("{:<60}{:<20}\n", "     3.04           OBSERVATION DATA    M", "RINEX VERSION / TYPE") +
+      fmt::format("{:<60}{:<20}\n", "G    1 C1C", "SYS / # / OBS TYPES") + fmt::format("{:<60}{:<20}\n", "", "END OF HEADER");
+  const std::string epoch = "> 2021 09 22 06 30  0.0000000  0  1\nG05  21243381.127\n";
+  return {
+      {"empty", Kind::kEvents, "", kWeek, "%: the file is empty"},
+      {"only a header", Kind::kEvents, "time_s,id\n", kWeek, "%:1: no row"},
+      {"no week", Kind::kEvents, "time_s,id\n100.5,a\n", "", "%: seconds of week without a GPS week"},
+      {"no time", Kind::kEvents, "t,id\n100.5,a\n", kWeek, "%: no column named \"time_s\""},
+      {"no such name", Kind::kEvents, "time_s,id\n100.5,a\n", "columns: {time: time_s, id: image}, gps_week: 2374",
+       "%: no column named \"image\""},
+      {"a word for a time", Kind::kEvents, "100.5,a\nsoon,b\n", mapped, "%:2: \"soon\" in column 1"},
+      {"a date for seconds", Kind::kEvents, "2025-07-08 19:34:18,a\n2025-07-08 19:34:19,b\n", mapped,
+       "%:1: \"2025-07-08 19:34:18\""},
+      {"seconds for a date", Kind::kEvents, "100.5,a\n101.5,b\n", "columns: {time: 1}, time: {kind: utc}",
+       "%:1: time \"100.5\""},
+      {"no date", Kind::kEvents, "2025-02-30 19:34:18,a\n", "columns: {time: 1}, time: {kind: utc}", "%:1:"},
+      {"a first event of a date alone", Kind::kEvents, "a,2025-07-08 19:34:18\nb,2025-07-08 19:34:19\n",
+       "columns: {time: 2, id: 1}, time: {kind: utc}", "%:1: \"2025-07-08 19:34:18\" in a line without a number"},
+      {"no finite time", Kind::kEvents, "time_s,id\nnan,a\nnan,b\n", kWeek, "%: no time mark that can be used"},
+      {"a latitude beyond the pole", Kind::kEvents, "time_s,lat_deg,lon_deg,height_m\n100,95,7,400\n", kWeek, "%:2:"},
+      {"an edge of a table", Kind::kEvents, "time_s,id\n100.5,a\n", kWeek + ", edge: rising", "%: time marks without edges"},
+      {"RINEX without events", Kind::kEvents, rinex_header + epoch, "", "%: no time mark"},
+      {"RINEX without observations", Kind::kEvents, rinex_header + "> 2021 09 22 06 30  0.0000000  5  0\n", "",
+       "%:4: no epoch with observations"},
+      {"UBX without marks", Kind::kEvents, test::ubx(0x0a, 0x04, std::string(40, ' ')), "", "%: no time mark"},
+  };
+}
+
 TEST(SpoiledInput, EveryOneIsRefusedWithFileAndLine) {
   const Files files;
   auto all = imu_files();
-  for (const auto& list : {binary_imu_files(), receiver_files(), gnss_files(), gnss_tables(), reference_files()})
+  for (const auto& list : {binary_imu_files(), receiver_files(), gnss_files(), gnss_tables(), reference_files(), event_files()})
     all.insert(all.end(), list.begin(), list.end());
   EXPECT_GE(all.size(), 100U);
   int index = 0;
@@ -323,6 +354,7 @@ TEST(SpoiledInput, EveryOneIsRefusedWithFileAndLine) {
       if (spoiled.kind == Kind::kImu) (void)files.imu(name, spoiled.keys);
       if (spoiled.kind == Kind::kGnss) (void)files.gnss(name, spoiled.keys);
       if (spoiled.kind == Kind::kReference) (void)files.reference(name, spoiled.keys);
+      if (spoiled.kind == Kind::kEvents) (void)files.events(name, spoiled.keys);
     });
     EXPECT_NE(message, "") << spoiled.what << " was read";
     EXPECT_NE(message.find(replaced(spoiled.message, "%", name)), std::string::npos) << spoiled.what << "\n  " << message;

@@ -324,17 +324,18 @@ TEST(UbxTimeMarks, AreInGpsTime) {
                              tim_tm2(kValid | kUtc | kRising, kUbxTestWeek, 35'985'000, 0) +
                              tim_tm2(kGnss | kRising, kUbxTestWeek, 36'009'000, 0) +
                              tim_tm2(kValid | kRising, kUbxTestWeek, 36'009'000, 0));
-  const auto recording = read_time_marks(files.path("marks.ubx"));
+  const auto recording = read_time_marks(TimeMarkFileOptions::of_file(files.path("marks.ubx")));
   ASSERT_EQ(recording.marks.size(), 3U);
   EXPECT_EQ(recording.marks[0].t.nanoseconds(), kUbxTestStart.nanoseconds() + 1'500'250);
-  EXPECT_TRUE(recording.marks[0].rising);
+  EXPECT_EQ(recording.marks[0].edge, record::Edge::kRising);
   EXPECT_EQ(recording.marks[0].count, 7);
   EXPECT_DOUBLE_EQ(recording.marks[0].sd_s, 25e-9);
-  EXPECT_FALSE(recording.marks[1].rising);
+  EXPECT_EQ(recording.marks[1].edge, record::Edge::kFalling);
   EXPECT_EQ(recording.marks[2].t, kUbxTestStart + 3.0);
   EXPECT_EQ(test::count_of(recording.events, "time_mark_invalid"), 2);
   files.put("none.ubx", nav_pvt({}));
-  EXPECT_NE(refusal([&] { (void)read_time_marks(files.path("none.ubx")); }).find("no time mark"), std::string::npos);
+  EXPECT_NE(refusal([&] { (void)read_time_marks(TimeMarkFileOptions::of_file(files.path("none.ubx"))); }).find("no time mark"),
+            std::string::npos);
 }
 
 TEST(UbxFile, SaysWhatItHasInstead) {

@@ -108,7 +108,7 @@ TEST(AtomicFile, FullDiskIsSeen) {
   EXPECT_NE(failure([] { write_text("/dev/full", "x"); }).find("/dev/full: cannot be written: No space left"),
             std::string::npos);
   EXPECT_TRUE(std::filesystem::exists("/dev/full"));  // written directly, never replaced
-  const auto nav = make_nav_writer("/dev/full");
+  const auto nav = trajectory_format("nav").make("/dev/full", {});
   EXPECT_NE(failure([&] {
               record::TrajectoryEpoch epoch;
               epoch.nav.r_eb_e = geo::ecef_from_geodetic({0.7, 0.1, 0.0});
@@ -125,7 +125,7 @@ long occurrences(const std::string& text, std::string_view word) {
 
 TEST(Kml, ThinsTheTrackAndKeepsItsEnds) {
   const Files files;
-  const auto kml = make_kml_writer(files.path("a.kml"), "drive <1> & back", {}, 1.0);
+  const auto kml = trajectory_format("kml").make(files.path("drive <1> & back.kml"), {});
   for (int i = 0; i <= 100; ++i) {
     record::TrajectoryEpoch epoch;
     epoch.nav.t = geo::GpsTime::from_week(2374, 243258.499 + 0.01 * i);
@@ -133,7 +133,7 @@ TEST(Kml, ThinsTheTrackAndKeepsItsEnds) {
     kml->write(epoch);
   }
   kml->close();
-  const std::string text = files.get("a.kml");
+  const std::string text = files.get("drive <1> & back.kml");
   EXPECT_NE(text.find("<name>drive &lt;1&gt; &amp; back</name>"), std::string::npos);
   const long points = occurrences(text, "<gx:coord>");
   EXPECT_GE(points, 6);  // 6.38 m in steps of at least 1 m, with both ends
@@ -148,7 +148,7 @@ TEST(Kml, ThinsTheTrackAndKeepsItsEnds) {
 TEST(Kml, HeightsAreAboveTheGeoidOrNotUsed) {
   const Files files;
   for (const bool known : {true, false}) {
-    const auto kml = make_kml_writer(files.path("a.kml"), "a", known ? std::optional<double>(48.25) : std::nullopt);
+    const auto kml = trajectory_format("kml").make(files.path("a.kml"), {known ? std::optional<double>(48.25) : std::nullopt});
     record::TrajectoryEpoch epoch;
     epoch.nav.r_eb_e = geo::ecef_from_geodetic({0.7, 0.1, 500.0});
     kml->write(epoch);
@@ -177,7 +177,7 @@ std::vector<record::TrajectoryEpoch> of_changing_quality() {
 
 TEST(Kml, EachStretchOfAQualityIsATrackInItsColourAndNoneIsApartFromTheNext) {
   const Files files;
-  const auto kml = make_kml_writer(files.path("a.kml"), "a", {});
+  const auto kml = trajectory_format("kml").make(files.path("a.kml"), {});
   for (const auto& epoch : of_changing_quality()) kml->write(epoch);
   kml->close();
   const std::string text = files.get("a.kml");
@@ -190,7 +190,7 @@ TEST(Kml, EachStretchOfAQualityIsATrackInItsColourAndNoneIsApartFromTheNext) {
 
 TEST(Pos, SaysWhatIsKnownOfGnssAndWhereThereWasNone) {
   const Files files;
-  const auto pos = make_pos_writer(files.path("a.pos"));
+  const auto pos = trajectory_format("pos").make(files.path("a.pos"), {});
   for (const auto& epoch : of_changing_quality()) pos->write(epoch);
   pos->close();
   std::istringstream lines(files.get("a.pos"));
@@ -209,16 +209,19 @@ TEST(Pos, SaysWhatIsKnownOfGnssAndWhereThereWasNone) {
 
 TEST(Writers, EveryFormatByName) {
   const Files files;
-  for (const auto name : trajectory_formats()) {
-    const auto writer = make_trajectory_writer(name, files.path("trajectory"));
+  for (const TrajectoryFormat& format : trajectory_formats()) {
+    const auto writer = format.make(files.path(fmt::format("trajectory.{}", format.name)), {});
     record::TrajectoryEpoch epoch;
     epoch.nav.r_eb_e = geo::ecef_from_geodetic({0.7, 0.1, 0.0});
     epoch.nav.t = geo::GpsTime::from_week(2300, 10.0);
     writer->write(epoch);
     writer->close();
-    EXPECT_GT(std::filesystem::file_size(files.path(fmt::format("trajectory.{}", name))), 100U) << name;
+    EXPECT_GT(std::filesystem::file_size(files.path(fmt::format("trajectory.{}", format.name))), 100U) << format.name;
+    if (!format.companion.empty()) {
+      EXPECT_TRUE(std::filesystem::exists(files.path(fmt::format("trajectory.{}", format.companion)))) << format.name;
+    }
   }
-  EXPECT_THROW((void)make_trajectory_writer("xls", files.path("t")), std::invalid_argument);
+  EXPECT_THROW((void)trajectory_format("xls"), std::invalid_argument);
 }
 
 }  // namespace

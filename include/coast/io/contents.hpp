@@ -39,7 +39,7 @@ struct FileContents {
 /// RINEX. Columns of a table must have the default names.
 /// @param gps_week  of files with seconds of week only
 /// @throws InputError  the file is of no kind that is read here, nothing in it can be read, or it has seconds of week and no
-/// week
+///                     week
 [[nodiscard]] FileContents read_contents(const std::filesystem::path& file, std::optional<int> gps_week = std::nullopt);
 
 }  // namespace coast::io

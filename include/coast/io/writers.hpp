@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
@@ -61,33 +62,31 @@ class TrajectoryWriter {
   virtual void close() = 0;
 };
 
-/// `.nav`: week sow lat lon h vn ve vd roll pitch yaw. 1e-11 deg (1 um), 1e-5 m, 1e-6 m/s, 1e-9 deg; some 1 million epochs/s.
-[[nodiscard]] std::unique_ptr<TrajectoryWriter> make_nav_writer(const std::filesystem::path& path);
-/// CSV with header: gps_week, sow_s, position, velocity, attitude; standard deviations (N, E, D; roll, pitch, yaw) and
-/// correlations of position, velocity and attitude errors.
-[[nodiscard]] std::unique_ptr<TrajectoryWriter> make_csv_writer(const std::filesystem::path& path);
-/// SBET (136-byte records of doubles, rad, little endian). Acceleration (without gravity) and angular rate, both with respect
-/// to the Earth and in body axes, are those of `motion`; the wander angle is zero: the attitude's yaw is the true heading.
-/// `smrmsg` is the file of standard deviations (80-byte records).
-[[nodiscard]] std::unique_ptr<TrajectoryWriter> make_sbet_writer(const std::filesystem::path& sbet,
-                                                                 const std::filesystem::path& smrmsg);
-/// RTKLIB `.pos` (GPST calendar, degrees, ellipsoidal), positions and velocities with signed-root covariances. Q, ns, age and
-/// ratio are those of `gnss`; without GNSS, Q = 7 (dead reckoning) and ns = 0.
-[[nodiscard]] std::unique_ptr<TrajectoryWriter> make_pos_writer(const std::filesystem::path& path);
-/// KML tracks with UTC times, one track for each stretch of equal GNSS quality, coloured by quality; thinned to steps of at
-/// least `min_step_m`. Altitudes are above mean sea level, as viewers expect; if the geoid is not known they are above the
-/// ellipsoid, the tracks are clamped to the ground, and the description states this.
-/// @param geoid_height_m  height of the geoid above the height reference of the trajectory, m
-[[nodiscard]] std::unique_ptr<TrajectoryWriter> make_kml_writer(const std::filesystem::path& path, std::string_view name,
-                                                                std::optional<double> geoid_height_m, double min_step_m = 1.0);
+/// What a trajectory file is written with, beside the epochs.
+struct WriterOptions {
+  std::optional<double> geoid_height_m;  ///< height of the geoid above the height reference of the trajectory, m
+  double min_step_m = 1.0;               ///< least distance between points of lines on maps: kml, gpx, geojson
+  bool covariance = true;                ///< whether epochs have one; where they have none, none is written
+};
 
-/// One of `output.formats`: nav | csv | sbet | pos | kml; the extension is added to `stem`.
-/// @throws std::invalid_argument  another name
-[[nodiscard]] std::unique_ptr<TrajectoryWriter> make_trajectory_writer(std::string_view format,
-                                                                       const std::filesystem::path& stem,
-                                                                       std::optional<double> geoid_height_m = {});
-/// The names that make_trajectory_writer accepts.
-[[nodiscard]] const std::vector<std::string_view>& trajectory_formats();
+/// A file format of trajectories that coast writes.
+struct TrajectoryFormat {
+  std::string_view name;            ///< as in `output.formats`, and the extension
+  std::string_view description;     ///< one line for the help page
+  std::string_view companion = {};  ///< extension of a second file beside it; empty: none
+  bool velocity = false;            ///< whether it contains velocities
+  bool attitude = false;            ///< whether it contains attitudes
+  bool covariance = false;          ///< whether it makes no sense without covariances
+  std::function<std::unique_ptr<TrajectoryWriter>(const std::filesystem::path&, const WriterOptions&)> make = {};
+};
+
+/// The formats, in an explicit table. To add one, write a file under src/io/writers and a line in trajectory_formats.cpp.
+/// Axes, times and the last digit of each stand in docs/outputs.md.
+[[nodiscard]] const std::vector<TrajectoryFormat>& trajectory_formats();
+/// @throws std::invalid_argument  no such format
+[[nodiscard]] const TrajectoryFormat& trajectory_format(std::string_view name);
+/// The second file of a format: the same name with the other extension.
+[[nodiscard]] std::filesystem::path companion_of(const std::filesystem::path& file, std::string_view companion);
 
 /// GNSS fixes as RTKLIB `.pos` with signed-root covariances; reads back to the printed digits (1e-9 deg, 1e-4 m, 1e-5 m of sd;
 /// if a sd is below 1e-4 m, enough digits to give it four, down to a nanometre).

@@ -13,6 +13,7 @@
 #include "coast/report/series.hpp"
 #include "coast/study/causes.hpp"
 #include "coast/study/comparison.hpp"
+#include "coast/study/marked_states.hpp"
 #include "coast/study/outage.hpp"
 #include "coast/study/solution.hpp"
 
@@ -122,6 +123,13 @@ class TrajectoryCurves {
   std::unique_ptr<Curves> curves_;
 };
 
+/// Events of the run file in the delivered trajectory.
+struct EventResults {
+  std::vector<record::MarkedState> states;
+  std::vector<study::MissedMark> missed;
+  std::optional<study::DelayEstimate> delay;  ///< if positions stand beside the times
+};
+
 /// Results of a run. The trajectory itself goes to sinks, epoch by epoch: ten hours at 200 Hz need not be in memory.
 struct ProcessResult {
   geo::GpsTime start;
@@ -147,6 +155,7 @@ struct ProcessResult {
   std::vector<study::OutageResult> outages;  ///< withheld in the delivered trajectory
   std::vector<study::OutageResult> sweep;    ///< each run separately
   std::optional<study::LeverArmCheck> lever_arm;
+  std::optional<EventResults> marked;
   std::vector<Separation> separations;
   std::optional<estimate::NoiseFit> noise_fit;
   std::vector<StateTrack> states;
@@ -200,7 +209,7 @@ class TrajectoryFiles {
   std::unique_ptr<Files> files_;
 };
 
-/// summary.json, innovations.csv, run.resolved.yaml, report.html.
+/// summary.json, innovations.csv, run.resolved.yaml, report.html; with events events.csv, events_opk.csv, geo.txt.
 void write(const RunConfig& config, const ProcessResult& result, const std::filesystem::path& folder);
 [[nodiscard]] std::string told(const RunConfig& config, const ProcessResult& result, const std::filesystem::path& folder);
 /// @throws NumericalError  the result contradicts its input, and the configuration does not accept that

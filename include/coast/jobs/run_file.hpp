@@ -14,12 +14,15 @@
 #include "coast/io/gnss.hpp"
 #include "coast/io/imu.hpp"
 #include "coast/io/reference.hpp"
+#include "coast/io/time_marks.hpp"
 #include "coast/jobs/job.hpp"
 #include "coast/jobs/ppk.hpp"
 #include "coast/record/gnss.hpp"
 #include "coast/record/imu.hpp"
 #include "coast/record/imu_calibration.hpp"
+#include "coast/record/time_mark.hpp"
 #include "coast/record/trajectory.hpp"
+#include "coast/study/marked_states.hpp"
 #include "coast/study/mission.hpp"
 #include "coast/study/outage.hpp"
 
@@ -55,6 +58,14 @@ struct AidConfig {
   std::shared_ptr<const estimate::Aid> aid;
 };
 
+/// Instants at which the state of a device on the body is wanted, such as the exposures of a camera.
+struct EventOptions {
+  io::TimeMarkFileOptions file;
+  bool imu_clock = false;  ///< times are those of the IMU's clock; else of GNSS, which differs by the time offset of the fixes
+  double delay_s = 0.0;    ///< from the stated time to the instant that is meant
+  study::Mounted camera;
+};
+
 struct RunConfig {
   config::Node root;
   std::filesystem::path file;
@@ -77,6 +88,7 @@ struct RunConfig {
   bool smooth = true;
   bool combined = false;  ///< smoothed by combining forward and backward filter
   OutputOptions output;
+  std::optional<EventOptions> events;
   bool accept = false;  ///< a result that fails its checks is delivered with exit status 0
 };
 
@@ -88,6 +100,7 @@ struct Recordings {
   record::ImuRecording imu;  ///< body axes
   record::GnssRecording gnss;
   std::optional<record::Trajectory> reference;
+  std::optional<record::TimeMarkRecording> marks;                ///< each with a name
   std::shared_ptr<const estimate::CarrierObservations> carrier;  ///< for tight coupling
   std::vector<record::AidRecording> aids;                        ///< in the order of the configuration
   std::vector<std::string> inspection;                           ///< how the input was interpreted, sentence by sentence

@@ -10,6 +10,7 @@
 #include "coast/geo/time.hpp"
 #include "coast/record/event.hpp"
 #include "coast/record/satellite.hpp"
+#include "coast/record/time_mark.hpp"
 
 namespace coast::record {
 
@@ -41,6 +42,7 @@ struct ObservationRecording {
       Eigen::Vector3d::Zero();           ///< antenna reference point from the marker: east, north, up, m
   std::map<int, int> glonass_channels;   ///< frequency number by slot, if stated
   std::vector<ObservationEpoch> epochs;  ///< strictly increasing in time
+  std::vector<TimeMark> marks;           ///< outside events that RINEX records between epochs, in the order of time
   Events events;
 };
 

@@ -34,6 +34,7 @@ class ObservationReader {
     }
     if (recording_.epochs.empty())
       lines_.refuse("no epoch with observations", "at least one", "The header is whole, but nothing follows it.");
+    std::ranges::stable_sort(recording_.marks, {}, &record::TimeMark::t);
     report();
     return std::move(recording_);
   }
@@ -49,6 +50,7 @@ class ObservationReader {
   [[nodiscard]] bool read_records2(const std::vector<std::string>& ids, bool power_failure);
   [[nodiscard]] bool read_records3(std::size_t satellites, bool power_failure);
   [[nodiscard]] bool skip_event(char flag, std::size_t lines);
+  void keep_mark(std::string_view line);
   void begin_satellite(std::optional<Satellite> satellite);
   void take(std::string_view line, std::size_t at, std::size_t column);
   void end_satellite(bool power_failure);
@@ -147,6 +149,7 @@ bool ObservationReader::read_epoch() {
   if (!satellites || *satellites < 0 || flag < '0' || flag > '6')
     lines_.refuse(in_quotes(line, 60), "an epoch line with its flag and the number of satellites");
   const auto number = static_cast<std::size_t>(*satellites);
+  if (flag == '5') keep_mark(line);
   if (flag > '1') return skip_event(flag, number);
   const auto calendar = calendar_of(line);
   const auto t = calendar ? gps_time(*calendar, scale_) : std::nullopt;
@@ -204,6 +207,14 @@ bool ObservationReader::read_records3(std::size_t satellites, bool power_failure
     end_satellite(power_failure);
   }
   return true;
+}
+
+/// Flag 5: an outside event, whose time is in the scale of the observations. Several may stand between two epochs.
+void ObservationReader::keep_mark(std::string_view line) {
+  const auto calendar = calendar_of(line);
+  const auto t = calendar ? gps_time(*calendar, scale_) : std::nullopt;
+  if (!t) return spoiled_.add();
+  recording_.marks.emplace_back().t = *t;
 }
 
 /// Flags 2 to 5 announce header lines, 6 cycle slips in the form of observations.

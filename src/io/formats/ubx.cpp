@@ -2,7 +2,6 @@
 
 #include "../ubx/ubx_messages.hpp"
 #include "../ubx/ubx_readers.hpp"
-#include "coast/io/time_marks.hpp"
 #include "formats.hpp"
 
 namespace coast::io {
@@ -20,7 +19,7 @@ Format ubx_format() {
   Format format{"ubx", "UBX of u-blox receivers", sniff_ubx, read_ubx_imu, read_ubx_gnss, {}};
   format.read_observations = read_ubx_observations;
   format.read_navigation = read_ubx_navigation;
-  format.read_time_marks = read_time_marks;
+  format.read_time_marks = read_ubx_time_marks;
   format.count_messages = [](const std::filesystem::path& file) { return count_frames(file, kUbxLog); };
   return format;
 }

@@ -6,9 +6,9 @@
 
 #include "../binary.hpp"
 #include "../counted.hpp"
-#include "coast/io/time_marks.hpp"
 #include "coast/record/error.hpp"
 #include "ubx_messages.hpp"
+#include "ubx_readers.hpp"
 
 namespace coast::io {
 
@@ -29,7 +29,7 @@ std::optional<geo::GpsTime> edge_time(std::string_view b, std::size_t week_at, s
 
 }  // namespace
 
-record::TimeMarkRecording read_time_marks(const std::filesystem::path& file) {
+record::TimeMarkRecording read_ubx_time_marks(const std::filesystem::path& file) {
   constexpr std::size_t kSize = 28;
   constexpr std::size_t kRisingWeek = 4, kFallingWeek = 6, kRisingTow = 8, kFallingTow = 16;
   FrameStream stream(file, kUbxLog);
@@ -47,8 +47,8 @@ record::TimeMarkRecording read_time_marks(const std::filesystem::path& file) {
       if ((flags & (rising ? kNewRising : kNewFalling)) == 0) continue;
       const auto t = edge_time(b, rising ? kRisingWeek : kFallingWeek, rising ? kRisingTow : kFallingTow, base);
       if (usable && t)
-        recording.marks.push_back({*t, 1e-9 * number_at<std::uint32_t>(b, 24), number_at<std::uint8_t>(b, 0), rising,
-                                   number_at<std::uint16_t>(b, 2)});
+        recording.marks.push_back({*t, 1e-9 * number_at<std::uint32_t>(b, 24), number_at<std::uint8_t>(b, 0),
+                                   rising ? record::Edge::kRising : record::Edge::kFalling, number_at<std::uint16_t>(b, 2)});
       else
         ++left_out;
     }

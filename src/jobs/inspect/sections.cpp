@@ -123,11 +123,14 @@ Section trajectory_section(const record::Trajectory& trajectory) {
 }
 
 Section marks_section(const record::TimeMarkRecording& recording) {
-  const auto rising = std::ranges::count_if(recording.marks, &record::TimeMark::rising);
-  return {"time marks",
-          {fmt::format("{} rising and {} falling edges, {} to {}", rising,
-                       static_cast<std::ptrdiff_t>(recording.marks.size()) - rising, geo::to_string(recording.marks.front().t),
-                       geo::to_string(recording.marks.back().t))}};
+  const auto with = [&](record::Edge edge) { return std::ranges::count(recording.marks, edge, &record::TimeMark::edge); };
+  const std::string what =
+      with(record::Edge::kNotStated) > 0
+          ? fmt::format("{}", recording.marks.size())
+          : fmt::format("{} rising and {} falling edges", with(record::Edge::kRising), with(record::Edge::kFalling));
+  return {
+      "time marks",
+      {fmt::format("{}, {} to {}", what, geo::to_string(recording.marks.front().t), geo::to_string(recording.marks.back().t))}};
 }
 
 }  // namespace coast::jobs

@@ -17,6 +17,7 @@ ProcessResult what_was_read(const Recordings& recordings) {
   add(recordings.gnss.events);
   for (const record::AidRecording& aid : recordings.aids) add(aid.events);
   if (recordings.reference) add(recordings.reference->events);
+  if (recordings.marks) add(recordings.marks->events);
   add(recordings.inspection_events);
   result.inspection = recordings.inspection;
   result.imu_samples = recordings.imu.samples.size();

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include "coast/io/event_writers.hpp"
 #include "coast/io/results_folder.hpp"
 #include "coast/io/writers.hpp"
 #include "common/results.hpp"
@@ -15,6 +16,7 @@ std::vector<std::string> files_of(const RunConfig& config) {
   std::vector<std::string> files = trajectory_files(config.output);
   for (const char* file : {"run.resolved.yaml", "summary.json", "innovations.csv", "report.json", "report.html"})
     files.emplace_back(file);
+  if (config.events) files.insert(files.end(), {"events.csv", "events_opk.csv", "geo.txt"});
   return files;
 }
 
@@ -48,9 +50,12 @@ struct TrajectoryFiles::Files {
 TrajectoryFiles::TrajectoryFiles(const RunConfig& config, const std::filesystem::path& folder)
     : files_(std::make_unique<Files>(config.output)) {
   files_->folder = folder;
+  io::WriterOptions options;
+  options.geoid_height_m = geoid_height(config);
   for (const std::string& format : config.output.formats) {
-    if (format == "nav") files_->forward_writers.push_back(io::make_nav_writer(folder / "forward.nav"));
-    files_->writers.push_back(io::make_trajectory_writer(format, folder / "trajectory", geoid_height(config)));
+    const io::TrajectoryFormat& how = io::trajectory_format(format);
+    if (format == "nav") files_->forward_writers.push_back(how.make(folder / "forward.nav", options));
+    files_->writers.push_back(how.make(folder / fmt::format("trajectory.{}", format), options));
   }
 }
 
@@ -70,6 +75,11 @@ void TrajectoryFiles::close() {
 void write(const RunConfig& config, const ProcessResult& result, const std::filesystem::path& folder) {
   io::write_text(folder / "run.resolved.yaml", result.resolved);
   io::write_text(folder / "innovations.csv", innovations_csv(result));
+  if (result.marked) {
+    io::write_events_csv(folder / "events.csv", result.marked->states);
+    io::write_events_opk(folder / "events_opk.csv", result.marked->states);
+    io::write_odm_geo(folder / "geo.txt", result.marked->states);
+  }
   write_page(make_page({config, result}), folder);
   io::write_text(folder / "summary.json", summary_json(result));
 }

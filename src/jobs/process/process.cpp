@@ -78,7 +78,8 @@ ProcessResult process(const RunConfig& config, Recordings recordings, const Traj
   if (progress.say)
     for (const record::Event& event : mission->adaptations()) progress.say(event.text);
   const geo::GpsTime start = mission->start().nav.t, end = mission->mission().imu.samples.back().t;
-  const Work work{config, *mission, recordings.reference, outages_of(config, start, end), knot_sampling(end - start), progress};
+  const Work work{config,   *mission,        recordings.reference, outages_of(config, start, end), knot_sampling(end - start),
+                  progress, recordings.marks};
   describe_mission(work, result);
 
   const study::GapFreeReference gap_free = solve_without_outages(work);

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "process/background_sink.hpp"
+#include "process/event_results.hpp"
 #include "process/gnss_course.hpp"
 #include "process/page/curves.hpp"
 #include "process/scores.hpp"
@@ -65,9 +66,18 @@ class Audience {
   MotionChecks motion_;
   KnotStates knots_;
   study::GapFreeReference gap_free_;
+  std::optional<study::MarkedStates> marked_;  ///< from the first delivered epoch on: with a smoother the offset is known then
+  std::optional<int> offset_state_;            ///< of the time offset
+  double time_offset_s_;                       ///< of the fixes, as known so far
   Scores forward_scores_, scores_;
   BackgroundSink write_forward_, draw_forward_, write_, draw_;
 };
+
+/// Which state of the filter the time offset of the fixes is, if it is one.
+std::optional<int> time_offset_state(const Work& work) {
+  return estimate::StateLayout(work.mission.setup().model, work.mission.mission().C_s_b, work.options().auxiliary)
+      .time_offset();
+}
 
 record::EpochSink or_nothing(const record::EpochSink& sink) {
   return sink ? sink : [](const record::TrajectoryEpoch&) {};
@@ -79,6 +89,8 @@ Audience::Audience(const Work& work, const study::Truth& truth, const Trajectory
       gnss_(work.mission.mission()),
       motion_(work.mission.mission()),
       knots_(work.sampling),
+      offset_state_(time_offset_state(work)),
+      time_offset_s_(work.mission.mission().time_offset_s),
       forward_scores_(truth.trajectory, truth.lever_arm_b, work.reference.has_value(), work.outages, work.mission.mission(),
                       work.start()),
       scores_(truth.trajectory, truth.lever_arm_b, work.reference.has_value(), work.outages, work.mission.mission(),
@@ -93,6 +105,8 @@ Audience::Audience(const Work& work, const study::Truth& truth, const Trajectory
         curves.add_smoothed(epoch);
         scores_.add(epoch);
         motion_.add(epoch);
+        if (!marked_) marked_ = marked_states(work_, time_offset_s_);
+        if (marked_) marked_->add(epoch);
         if (keeps_gap_free_) gap_free_.add(epoch);
       }) {
   if (work.config.tight) gnss_.add_all_but(work.options().withheld);
@@ -113,7 +127,10 @@ study::SolutionOutputs Audience::outputs() {
     if (!work_.config.smooth) deliver(epoch);
   };
   if (work_.config.smooth) outputs.smoothed = [this](const record::TrajectoryEpoch& epoch) { deliver(epoch); };
-  outputs.at_knots = [this](const estimate::FilterState& state) { knots_.add(state); };
+  outputs.at_knots = [this](const estimate::FilterState& state) {
+    knots_.add(state);
+    if (offset_state_ && work_.config.smooth) time_offset_s_ = work_.mission.mission().time_offset_s + state.x(*offset_state_);
+  };
   outputs.states = work_.sampling;
   return outputs;
 }
@@ -126,6 +143,10 @@ void Audience::give(Delivery& delivery) {
   delivery.forward_knots = std::move(knots_).knots();
   delivery.motion = motion_.checks();
   delivery.gap_free = std::move(gap_free_);
+  if (marked_) {
+    marked_->finish();
+    delivery.marked = std::move(marked_);
+  }
 }
 
 // The state of the offset is relative to the offset found by the preparation.
@@ -185,6 +206,7 @@ Delivery deliver(const Work& work, const EarlierPasses& passes, const study::Gap
   result.states = state_tracks(solution.filter->layout(), result.start, delivery.forward_knots, solution.smoothed);
   if (const auto event = unseen_base_offset(result.states)) result.events.push_back(*event);
   note_time_offset(work.mission.mission().time_offset_s, result);
+  if (delivery.marked) note_events(work, *delivery.marked, result);
   return delivery;
 }
 

@@ -19,6 +19,7 @@ struct Work {
   std::vector<study::Outage> outages;  ///< withheld from the delivered trajectory
   estimate::KnotSampling sampling;     ///< of the knots that are stored
   const Progress& progress;
+  const std::optional<record::TimeMarkRecording>& marks;
 
   [[nodiscard]] geo::GpsTime start() const { return mission.start().nav.t; }
   /// Options of the filter, with the outages withheld.
@@ -50,8 +51,9 @@ struct EarlierPasses {
 struct Delivery {
   study::Solution solution;
   std::vector<KnotState> forward_knots;
-  std::vector<Check> motion;         ///< checks of speed and tilt
-  study::GapFreeReference gap_free;  ///< of this solution, if a sweep needs one
+  std::vector<Check> motion;                  ///< checks of speed and tilt
+  study::GapFreeReference gap_free;           ///< of this solution, if a sweep needs one
+  std::optional<study::MarkedStates> marked;  ///< if the configuration has events
 };
 /// Solves the mission; its epochs go to the sinks, to the curves of the page and to the comparisons, all concurrently with the
 /// filter.

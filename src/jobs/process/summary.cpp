@@ -9,6 +9,7 @@
 #include "coast/geo/units.hpp"
 #include "common/drift.hpp"
 #include "common/error_json.hpp"
+#include "process/event_results.hpp"
 
 namespace coast::jobs {
 
@@ -105,13 +106,29 @@ Json separation_json(const std::vector<Separation>& separations) {
   return j;
 }
 
+Json time_marks_json(const EventResults& marked) {
+  Json j{{"located", marked.states.size()}, {"missed", marked.missed.size()}};
+  if (!marked.states.empty()) {
+    const WorstSigmas worst = worst_sigmas(marked.states);
+    j["sd_position_max_m"] = array_json(worst.position);
+    j["sd_attitude_max_deg"] = degrees_json(worst.attitude);
+    j["worst_position"] = worst.id;
+  }
+  if (marked.delay)
+    j["delay_found"] = {
+        {"beyond_stated_s", marked.delay->delay_s}, {"sd_s", marked.delay->sd_s}, {"marks", marked.delay->marks}};
+  return j;
+}
+
 /// @param written  of the trajectory: trajectory.nav and others of that name, forward.nav
-Json files_json(const std::vector<std::string>& written) {
+/// @param events   whether the run has events
+Json files_json(const std::vector<std::string>& written, bool events) {
   const auto has = [&](const char* file) { return std::ranges::find(written, file) != written.end(); };
   Json j;
   if (!written.empty()) j["trajectory"] = written.front();
   if (has("forward.nav")) j["forward"] = "forward.nav";
   if (has("trajectory.csv")) j["covariance"] = "trajectory.csv";
+  if (events) j["events"] = "events.csv";
   j["report"] = "report.html";
   j["resolved"] = "run.resolved.yaml";
   return j;
@@ -192,12 +209,13 @@ std::string summary_json(const ProcessResult& result) {
   if (result.lever_arm)
     j["lever_arm_misclosure"] = {{"estimated_minus_configured_m", array_json(result.lever_arm->difference_m)},
                                  {"sd_m", array_json(result.lever_arm->sd_m)}};
+  if (result.marked) j["time_marks"] = time_marks_json(*result.marked);
   if (!result.separations.empty()) j["forward_backward_separation"] = separation_json(result.separations);
   for (const StateTrack& track : result.states)
     if (!track.smoothed.empty())
       j["states_at_end"][track.name] = {{"value", track.smoothed.back()}, {"sd", track.smoothed_sd.back()}};
   j["events"] = events_json(result.events);
-  j["files"] = files_json(result.files);
+  j["files"] = files_json(result.files, result.marked.has_value());
   return j.dump(1) + "\n";
 }
 
@@ -228,6 +246,7 @@ std::string summary_text(const ProcessResult& result) {
     const Eigen::Vector3d rms = r.summary(r.smoothed ? *r.smoothed : r.forward).position.rms;
     text += fmt::format("against the reference, rms: {:.3f} {:.3f} {:.3f} m N E D\n", rms.x(), rms.y(), rms.z());
   }
+  if (result.marked) text += events_text(*result.marked, result.events);
   for (const DriftRow& row : drift_table(result.sweep))
     text += fmt::format("outages of {:g} s {} ({}): largest horizontal error, median: forward {:.3f} m, smoothed {:.3f} m\n",
                         row.duration_s, gnss_left(result.sweep.front().outage), row.outages, row.forward.horizontal.median,

@@ -1,12 +1,15 @@
 #include "process/trajectory_output.hpp"
 
+#include "coast/io/writers.hpp"
+
 namespace coast::jobs {
 
 std::vector<std::string> trajectory_files(const OutputOptions& options) {
   std::vector<std::string> files;
   for (const std::string& format : options.formats) {
     files.push_back("trajectory." + format);
-    if (format == "sbet") files.emplace_back("trajectory.smrmsg");
+    if (const std::string companion(io::trajectory_format(format).companion); !companion.empty())
+      files.push_back("trajectory." + companion);
     if (format == "nav") files.emplace_back("forward.nav");
   }
   return files;
@@ -19,10 +22,7 @@ void TrajectoryOutput::add(const record::TrajectoryEpoch& epoch) {
     written.nav = study::at_point(epoch.nav, options_.point_b, written.motion.omega_eb_b);
     written.motion.a_eb_b = motion_at_point_.at(written.nav).a_eb_b;
   }
-  const bool due = !options_.rate_hz || !last_ || epoch.nav.t - *last_ >= 1.0 / *options_.rate_hz - 1e-6;
-  if (!due) return;
-  to_(written);
-  last_ = epoch.nav.t;
+  if (rate_.due(epoch.nav.t)) to_(written);
 }
 
 }  // namespace coast::jobs

@@ -1,12 +1,12 @@
 #pragma once
 
-#include <optional>
 #include <string>
 #include <vector>
 
 #include "coast/jobs/run_file.hpp"
 #include "coast/record/trajectory.hpp"
 #include "coast/study/interpolation.hpp"
+#include "common/at_rate.hpp"
 
 namespace coast::jobs {
 
@@ -16,7 +16,8 @@ namespace coast::jobs {
 /// A streamed trajectory at the configured rate, for the configured point of the body, with rates and accelerations.
 class TrajectoryOutput {
  public:
-  TrajectoryOutput(const OutputOptions& options, record::EpochSink to) : options_(options), to_(std::move(to)) {}
+  TrajectoryOutput(const OutputOptions& options, record::EpochSink to)
+      : options_(options), to_(std::move(to)), rate_(options.rate_hz) {}
   void add(const record::TrajectoryEpoch& epoch);
 
  private:
@@ -24,7 +25,7 @@ class TrajectoryOutput {
   record::EpochSink to_;
   study::PassingMotion motion_;
   study::PassingMotion motion_at_point_;
-  std::optional<geo::GpsTime> last_;
+  AtRate rate_;
 };
 
 }  // namespace coast::jobs

@@ -13,6 +13,7 @@
 #include "coast/io/noise_levels.hpp"
 #include "coast/record/error.hpp"
 #include "common/tell.hpp"
+#include "run_file/run_events.hpp"
 
 namespace coast::jobs {
 
@@ -77,6 +78,7 @@ Recordings load(const RunConfig& config, const Progress& progress) {
   check_leap_seconds(config.gnss.time, recordings.gnss.source, recordings.gnss.fixes.back().t, recordings.inspection_events);
   for (const AidConfig& aid : config.aids) recordings.aids.push_back(io::read_aid(aid.file, recordings.imu.samples.front().t));
   if (config.reference) recordings.reference = io::read_reference(*config.reference, recordings.imu.samples.front().t);
+  if (config.events) recordings.marks = read_named_marks(*config.events, recordings.imu.samples.front().t);
   return recordings;
 }
 
@@ -87,6 +89,7 @@ void tell_inspection(const Recordings& recordings, const Progress& progress) {
   tell_warnings(recordings.gnss.events, progress);
   for (const record::AidRecording& aid : recordings.aids) tell_warnings(aid.events, progress);
   if (recordings.reference) tell_warnings(recordings.reference->events, progress);
+  if (recordings.marks) tell_warnings(recordings.marks->events, progress);
   tell_warnings(recordings.inspection_events, progress);
 }
 

@@ -13,6 +13,7 @@
 #include "run_file/run_aids.hpp"
 #include "run_file/run_config.hpp"
 #include "run_file/run_effects.hpp"
+#include "run_file/run_events.hpp"
 
 namespace coast::jobs {
 
@@ -154,14 +155,14 @@ void read_output(const Node& root, RunConfig& run) {
   if (const auto rate = output->find("rate_hz")) run.output.rate_hz = output->number_within("rate_hz", 0.0, 1e-3, 1e5);
   if (const auto formats = output->find("formats")) {
     std::vector<std::string>& wanted = run.output.formats;
+    std::vector<std::string_view> known;
+    for (const io::TrajectoryFormat& format : io::trajectory_formats()) known.push_back(format.name);
     wanted.clear();
     for (const Node& item : formats->items()) {
-      const auto& known = io::trajectory_formats();
-      if (std::ranges::find(known, item.text()) == known.end())
-        throw item.error("output format " + item.text(), "one of nav, csv, sbet, pos, kml");
+      static_cast<void>(item.choice(known));
       if (std::ranges::find(wanted, item.text()) == wanted.end()) wanted.push_back(item.text());
     }
-    if (wanted.empty()) throw formats->error("no format", "at least one of nav, csv, sbet, pos, kml");
+    if (wanted.empty()) throw formats->error("no format", fmt::format("at least one of {}", fmt::join(known, ", ")));
   }
   run.output.point_b = output->vector3("point_m", Eigen::Vector3d::Zero());
 }
@@ -305,6 +306,7 @@ RunConfig read_run_config(const std::filesystem::path& file) {
   read_outages(root, run);
   read_smoother(root, run);
   read_output(root, run);
+  if (const auto events = root.find("events")) run.events = read_events(*events);
   root.refuse_unasked();
   return run;
 }

@@ -112,7 +112,7 @@ void write(const SimulationConfig& config, const SimulationResult& result, const
   io::begin_results(folder / "run.yaml");
   io::write_imu_csv(folder / "imu.csv", mission.imu);
   io::write_gnss_pos(folder / "gnss.pos", mission.gnss);
-  const auto truth = io::make_nav_writer(folder / "truth.nav");
+  const auto truth = io::trajectory_format("nav").make(folder / "truth.nav", {});
   for (const record::NavState& nav : mission.truth.states) truth->write({nav, {}});
   truth->close();
   io::write_text(folder / "error_model.yaml", scenario.error_model->yaml());

@@ -1,12 +1,14 @@
-// SBET with SMRMSG.
+// SBET (136-byte records of doubles, rad, little endian) with SMRMSG, the standard deviations (80-byte records), beside it.
+// Acceleration (without gravity) and angular rate, both with respect to the Earth and in body axes, are those of `motion`; the
+// wander angle is zero: the attitude's yaw is the true heading.
 
 #include <array>
 #include <cmath>
 
-#include "binary.hpp"
+#include "../binary.hpp"
 #include "coast/geo/rotation.hpp"
 #include "coast/geo/units.hpp"
-#include "coast/io/writers.hpp"
+#include "writers.hpp"
 
 namespace coast::io {
 
@@ -38,7 +40,10 @@ class RecordFile {
 
 class SbetWriter final : public TrajectoryWriter {
  public:
-  SbetWriter(const std::filesystem::path& sbet, const std::filesystem::path& smrmsg) : sbet_(sbet), smrmsg_(smrmsg) {}
+  /// @param smrmsg  absent: no standard deviations
+  SbetWriter(const std::filesystem::path& sbet, const std::optional<std::filesystem::path>& smrmsg) : sbet_(sbet) {
+    if (smrmsg) smrmsg_.emplace(*smrmsg);
+  }
 
   void write(const record::TrajectoryEpoch& epoch) override {
     const geo::Geodetic p = geo::geodetic_from_ecef(epoch.nav.r_eb_e);
@@ -53,32 +58,38 @@ class SbetWriter final : public TrajectoryWriter {
     for (const double a : epoch.motion.a_eb_b) sbet_.put(a);
     for (const double omega : epoch.motion.omega_eb_b) sbet_.put(omega);
     sbet_.end_record();
-    write_uncertainty(t, epoch.cov, geo::euler_jacobian(attitude));
+    if (smrmsg_) write_uncertainty(t, epoch.cov, geo::euler_jacobian(attitude));
   }
   void close() override {
     sbet_.commit();
-    smrmsg_.commit();
+    if (smrmsg_) smrmsg_->commit();
   }
 
  private:
   /// time; N, E, D position [m]; N, E, D velocity [m/s]; roll, pitch, heading [arcmin]: one sigma.
   void write_uncertainty(double t, const record::NavCovariance& cov, const Eigen::Matrix3d& J) {
     const auto sd = [](const Eigen::Matrix3d& c) { return Eigen::Vector3d(c.diagonal().cwiseMax(0.0).cwiseSqrt()); };
-    smrmsg_.put(t);
-    for (const double s : sd(cov.position)) smrmsg_.put(s);
-    for (const double s : sd(cov.velocity)) smrmsg_.put(s);
-    for (const double s : sd(J * cov.attitude * J.transpose())) smrmsg_.put(s / geo::kArcMinute);
-    smrmsg_.end_record();
+    smrmsg_->put(t);
+    for (const double s : sd(cov.position)) smrmsg_->put(s);
+    for (const double s : sd(cov.velocity)) smrmsg_->put(s);
+    for (const double s : sd(J * cov.attitude * J.transpose())) smrmsg_->put(s / geo::kArcMinute);
+    smrmsg_->end_record();
   }
 
   RecordFile sbet_;
-  RecordFile smrmsg_;
+  std::optional<RecordFile> smrmsg_;
 };
 
 }  // namespace
 
-std::unique_ptr<TrajectoryWriter> make_sbet_writer(const std::filesystem::path& sbet, const std::filesystem::path& smrmsg) {
-  return std::make_unique<SbetWriter>(sbet, smrmsg);
+TrajectoryFormat sbet_trajectory() {
+  TrajectoryFormat format{"sbet", "SBET with rates and accelerations, SMRMSG beside it"};
+  format.companion = "smrmsg";
+  format.velocity = format.attitude = true;
+  format.make = [](const std::filesystem::path& file, const WriterOptions& options) {
+    return std::make_unique<SbetWriter>(file, options.covariance ? std::optional(companion_of(file, "smrmsg")) : std::nullopt);
+  };
+  return format;
 }
 
 }  // namespace coast::io
