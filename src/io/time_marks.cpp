@@ -72,9 +72,7 @@ record::TimeMarkRecording read_time_mark_table(const TimeMarkFileOptions& given,
   TableReader table(o.file);
   refuse_event_as_header(table, o.time_columns);
   if (o.time_columns.empty() && o.time.kind != TimeKind::kRow) {
-    const bool week = !o.time.kind_given && table.has("gps_week") && table.has("sow_s");
-    if (week) o.time.kind = TimeKind::kWeekAndSeconds;
-    o.time_columns = week ? std::vector<Column>{"gps_week", "sow_s"} : std::vector<Column>{"time_s"};
+    default_time_columns(table, o.time, o.time_columns);
     if (o.id_column.empty() && table.has("id")) o.id_column = "id";
     if (std::ranges::all_of(kDefaultPosition, [&](const char* name) { return table.has(name); }))
       o.position_columns = {kDefaultPosition.begin(), kDefaultPosition.end()};

@@ -30,7 +30,7 @@ struct OdometerFit {
   std::size_t stretches = 0;
 };
 /// The scale is the median ratio of chords between fixes to the odometer's distances, the delay that for which they differ
-/// least (mean squares, each limited, so that gross errors of fixes and slip do not matter), within a second.
+/// least (mean squares, each limited, so that gross errors of fixes and slip do not matter), found within a second.
 /// @param scale, delay_s  where stated, these are kept
 [[nodiscard]] OdometerFit fit_odometer(const TravelledDistance& distance, const record::GnssRecording& gnss,
                                        std::optional<double> scale, std::optional<double> delay_s);

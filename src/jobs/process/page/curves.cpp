@@ -1,6 +1,7 @@
 #include "process/page/curves.hpp"
 
 #include <cmath>
+#include <vector>
 
 #include "coast/geo/rotation.hpp"
 #include "coast/geo/units.hpp"
@@ -27,6 +28,15 @@ void add_with_band(Decimators& to, double t, const Eigen::Vector3d& value, const
 }
 void add(Decimators& to, double t, const Eigen::Vector3d& value) {
   for (Eigen::Index i = 0; i < 3; ++i) to[static_cast<std::size_t>(i)].add(t, value(i));
+}
+
+void add_to_minute(std::vector<MinuteAccuracy>& minutes, double t, const Eigen::Vector3d& sd_position,
+                   const Eigen::Vector3d& sd_attitude) {
+  constexpr double kMinute = 60.0;  // s
+  const double from = kMinute * std::floor(t / kMinute);
+  if (minutes.empty() || minutes.back().from_s != from) minutes.push_back({from, sd_position, sd_attitude});
+  minutes.back().sd_position = minutes.back().sd_position.cwiseMax(sd_position);
+  minutes.back().sd_attitude = minutes.back().sd_attitude.cwiseMax(sd_attitude);
 }
 
 }  // namespace
@@ -82,6 +92,7 @@ void TrajectoryCurves::Curves::add(const record::TrajectoryEpoch& epoch, Solutio
   const Eigen::Vector3d sd_attitude = (J * epoch.cov.attitude * J.transpose()).diagonal().cwiseSqrt() / geo::kDegree;
   add_with_band(to.attitude, t, Eigen::Vector3d(euler.roll, euler.pitch, to.yaw) / geo::kDegree, sd_attitude);
   jobs::add(to.sd_attitude, t, sd_attitude);
+  add_to_minute(to.minutes, t, sd_position, sd_attitude);
 }
 
 void TrajectoryCurves::Curves::add_delivered(const record::TrajectoryEpoch& epoch) {

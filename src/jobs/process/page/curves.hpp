@@ -26,6 +26,13 @@ class NearbyFrame {
   double height_ = 0.0;  ///< of the frame's origin, m
 };
 
+/// The largest sigmas within a minute: N, E, D in m; roll, pitch, yaw in deg.
+struct MinuteAccuracy {
+  double from_s = 0.0;  ///< since the start
+  Eigen::Vector3d sd_position = Eigen::Vector3d::Zero();
+  Eigen::Vector3d sd_attitude = Eigen::Vector3d::Zero();
+};
+
 /// Curves over seconds since the start; angles in degrees. Forward and smoothed share no data: they may be drawn concurrently.
 struct SolutionCurves {
   explicit SolutionCurves(double start_yaw);
@@ -35,6 +42,7 @@ struct SolutionCurves {
   Decimators sd_position;
   Decimators sd_velocity;
   Decimators sd_attitude;
+  std::vector<MinuteAccuracy> minutes;
   NearbyFrame nearby;
   double yaw;  ///< previous one, unwrapped, rad
 };

@@ -32,6 +32,7 @@ report::Page make_page(const ProcessPage& page) {
   };
   add(input_section(page));
   add(trajectory_section(page));
+  add(accuracy_section(page));
   add(motion_section(page));
   add(separation_section(page));
   add(innovation_section(page));

@@ -16,6 +16,7 @@ namespace coast::jobs {
 [[nodiscard]] std::vector<report::Tile> acceptance_tiles(const ProcessPage& page);
 [[nodiscard]] report::Section input_section(const ProcessPage& page);
 [[nodiscard]] report::Section trajectory_section(const ProcessPage& page);
+[[nodiscard]] report::Section accuracy_section(const ProcessPage& page);
 [[nodiscard]] report::Section motion_section(const ProcessPage& page);  ///< N, E, D, velocity, attitude and their sigmas
 [[nodiscard]] std::optional<report::Section> separation_section(const ProcessPage& page);
 [[nodiscard]] std::optional<report::Section> innovation_section(const ProcessPage& page);
