@@ -144,7 +144,7 @@ void compare(const std::filesystem::path& first, const std::filesystem::path& se
 
 void convert(const std::filesystem::path& input, const std::filesystem::path& output, const ConvertOptions& choice,
              const CommonOptions& options) {
-  ProgressLine line(options.quiet);
+  ProgressLine line(true);
   jobs::ConvertConfig config = jobs::read_convert(input, output, choice.format);
   config.gps_week = choice.gps_week;
   config.rate_hz = choice.rate_hz;

@@ -99,7 +99,7 @@ void write(const ConvertConfig& config, const record::Trajectory& trajectory, co
 }
 
 std::string told(const ConvertConfig& config, const record::Trajectory& trajectory, const std::filesystem::path&) {
-  return fmt::format("{}: {} epochs, {} to {}\n", config.output.string(), trajectory.states.size(),
+  return fmt::format("{}: {}, {} to {}\n", config.output.string(), io::trajectory_format(config.format).description,
                      geo::to_string(trajectory.states.front().t), geo::to_string(trajectory.states.back().t));
 }
 
