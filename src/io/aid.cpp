@@ -30,7 +30,7 @@ AidFileOptions AidFileOptions::from(const config::Node& aid, const std::vector<s
 
 namespace {
 
-constexpr double kLargest = 1e12;  // pulses
+constexpr double kLargestAidValue = 1e12;  // pulses
 
 class AidTable {
  public:
@@ -64,12 +64,14 @@ class AidTable {
     sample.t = time_.read();
     for (std::size_t i = 0; i < values_.size(); ++i) {
       const double value = table_.number(values_[i]);
-      if (std::abs(value) > kLargest) throw table_.error(fmt::format("{:g}", value), "a number that a sensor can measure");
+      if (std::abs(value) > kLargestAidValue)
+        throw table_.error(fmt::format("{:g}", value), "a number that a sensor can measure");
       sample.value(static_cast<Eigen::Index>(i)) = value;
     }
     for (std::size_t i = 0; i < sds_.size(); ++i) {
       const double sd = table_.number(sds_[i]);
-      if (!(sd > 0.0 && sd < kLargest)) throw table_.error("a standard deviation of zero or less", "a number above zero");
+      if (!(sd > 0.0 && sd < kLargestAidValue))
+        throw table_.error("a standard deviation of zero or less", "a number above zero");
       sample.sd(static_cast<Eigen::Index>(i)) = sd;
     }
     if (!recording.samples.empty() && sample.t <= recording.samples.back().t) return not_later_.add(sample.t);

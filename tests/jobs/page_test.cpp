@@ -125,8 +125,9 @@ ProcessResult full_result() {
   r.nis = {12.0, 3.0, 99};
   r.smallest_refusable_m = 0.3;
   for (int i = 1; i <= 100; ++i)
-    for (const auto kind : {estimate::UpdateKind::kGnssPosition, estimate::UpdateKind::kGnssVelocity,
-                            estimate::UpdateKind::kNonHolonomic, estimate::UpdateKind::kZeroVelocity}) {
+    for (const auto kind :
+         {estimate::UpdateKind::kGnssPosition, estimate::UpdateKind::kGnssVelocity, estimate::UpdateKind::kNonHolonomic,
+          estimate::UpdateKind::kZeroVelocity, estimate::UpdateKind::kHeadingHold, estimate::UpdateKind::kAid}) {
       estimate::InnovationRecord record;
       record.t = kStart + i;
       record.kind = kind;
@@ -136,6 +137,12 @@ ProcessResult full_result() {
       record.nis = 3.0;
       r.innovations.push_back(record);
     }
+  r.aids = {{"odometer", 99, 1, {1.0, 1.0, 99}}};
+  record::MarkedState event;
+  event.mark.id = "image_1";
+  event.nav = drive(50.0).nav;
+  event.cov = drive(50.0).cov;
+  r.marked = EventResults{{event}, {}, {}};
   add_reference(r);
   r.compared_with = "reference";
   r.outages = {outage(20.0, 10.0, 0.01)};
@@ -249,8 +256,9 @@ void expect_sound(const report::Page& page) {
 TEST_F(PageTest, FullResultHasEverySectionInOrder) {
   const report::Page page = make(full_result());
   expect_sound(page);
-  EXPECT_EQ(section_ids(page), (std::vector<std::string>{"input", "trajectory", "motion", "separation", "innovations",
-                                                         "sensors", "body", "outages", "reference", "processing"}));
+  EXPECT_EQ(section_ids(page),
+            (std::vector<std::string>{"input", "trajectory", "accuracy", "motion", "separation", "innovations", "sensors",
+                                      "body", "outages", "reference", "processing"}));
   EXPECT_EQ(page.tiles.size(), 8U);
 }
 
@@ -260,7 +268,8 @@ TEST_F(PageTest, WhatARunDidNotFindOutIsLeftOut) {
   bare.end = kStart + kSpan;
   const report::Page page = make(bare);
   expect_sound(page);
-  EXPECT_EQ(section_ids(page), (std::vector<std::string>{"input", "trajectory", "motion", "sensors", "body", "processing"}));
+  EXPECT_EQ(section_ids(page),
+            (std::vector<std::string>{"input", "trajectory", "accuracy", "motion", "sensors", "body", "processing"}));
   EXPECT_EQ(tile(page, "Lever-arm misclosure"), nullptr);
   EXPECT_EQ(tile(page, "Innovations over sigma"), nullptr);
 }

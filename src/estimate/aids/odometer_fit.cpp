@@ -74,7 +74,8 @@ Agreement agreement_at(const TravelledDistance& distance, const std::vector<Stre
 
 // Minimum of the parabola through values at -n, .., n steps, by least squares; within n/2 steps.
 double vertex(const std::vector<double>& y) {
-  const auto n = static_cast<double>(y.size() / 2);
+  const std::size_t half = y.size() / 2;
+  const auto n = static_cast<double>(half);
   double s_y = 0.0, s_sy = 0.0, s_ssy = 0.0, s_ss = 0.0, s_ssss = 0.0;
   for (std::size_t i = 0; i < y.size(); ++i) {
     const double s = static_cast<double>(i) - n;
