@@ -25,8 +25,8 @@ std::vector<report::Cell> row_of(std::vector<std::string> first, const Eigen::Ve
                                  const Eigen::Vector3d& degrees) {
   std::vector<report::Cell> row;
   for (std::string& text : first) row.push_back({std::move(text)});
-  for (const double sd : position) row.push_back({decimals(sd, 3)});
-  for (const double sd : degrees) row.push_back({decimals(sd, 3)});
+  for (const double sd : position) row.push_back({number(sd, 2)});
+  for (const double sd : degrees) row.push_back({number(sd, 2)});
   return row;
 }
 
