@@ -2,8 +2,11 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <cstdio>
 #include <random>
+#include <sstream>
 
 #include "coast/geo/earth.hpp"
 #include "coast/io/yaml.hpp"
@@ -17,6 +20,7 @@
 #include "coast/jobs/process.hpp"
 #include "coast/jobs/simulate.hpp"
 #include "coast/jobs/synth.hpp"
+#include "ppk/summary.hpp"
 #include "support/short_drive.hpp"
 
 namespace coast::jobs {
@@ -188,6 +192,31 @@ seed: 5
   for (const record::GnssFix& fix : result.fixes.fixes) fixed += fix.quality == record::FixQuality::kFixed ? 1U : 0U;
   EXPECT_GT(fixed, 150U);
   EXPECT_EQ((result.r_base_e - observed.r_base_e).norm(), 0.0);
+
+  // Where the base is taken from its own codes, vectors between the antennas remain as they are.
+  ppk_config.base_at.how = carrier::BaseAt::How::kMoving;
+  const PpkResult moving = ppk(ppk_config, recordings, Progress{});
+  std::istringstream rows(baselines_csv(moving));
+  std::string row;
+  std::getline(rows, row);
+  std::size_t compared = 0;
+  while (std::getline(rows, row)) {
+    double week = 0.0, sow = 0.0, n = 0.0, e = 0.0, d = 0.0, sdn = 0.0, sde = 0.0, sdd = 0.0, length = 0.0;
+    int quality = 0;
+    ASSERT_EQ(std::sscanf(row.c_str(), "%lf,%lf,%lf,%lf,%lf,%lf,%lf,%lf,%lf,%d", &week, &sow, &n, &e, &d, &sdn, &sde, &sdd,
+                          &length, &quality),
+              10)
+        << row;
+    if (quality != 1) continue;
+    const geo::GpsTime t = geo::GpsTime::from_week(static_cast<int>(week), sow);
+    const auto truth = std::ranges::lower_bound(simulated.mission.truth.states, t - 1e-3, {}, &record::NavState::t);
+    if (truth == simulated.mission.truth.states.end() || truth->t - t > 1e-3) continue;
+    const Eigen::Matrix3d C_e_n = geo::C_n_e(geo::geodetic_from_ecef(truth->r_eb_e)).transpose();
+    EXPECT_LE((Eigen::Vector3d(n, e, d) - C_e_n * (truth->r_eb_e - observed.r_base_e)).norm(), 0.05) << row;
+    EXPECT_NEAR(Eigen::Vector3d(n, e, d).norm(), length, 1e-3);
+    ++compared;
+  }
+  EXPECT_GT(compared, 100U);
 }
 
 TEST(InMemory, EstimatorStudyMeetsTheVarianceOfWhiteNoise) {

@@ -66,7 +66,8 @@ struct PpkResult {
 [[nodiscard]] PpkResult ppk(const PpkConfig& config, PpkRecordings recordings, const Progress& progress);
 
 [[nodiscard]] std::vector<std::string> files_of(const PpkConfig& config);
-/// ppk.pos, ppk.json (docs/schema/ppk_result.schema.json), residuals.csv, ppk.resolved.yaml, report.html.
+/// ppk.pos, ppk.json (docs/schema/ppk_result.schema.json), residuals.csv, ppk.resolved.yaml, report.html; of a moving base
+/// baselines.csv, as the aid `baseline` of a run file reads it.
 void write(const PpkConfig& config, const PpkResult& result, const std::filesystem::path& folder);
 [[nodiscard]] std::string told(const PpkConfig& config, const PpkResult& result, const std::filesystem::path& folder);
 /// Summary of the result, sentence by sentence.

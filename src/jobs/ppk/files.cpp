@@ -10,8 +10,18 @@
 
 namespace coast::jobs {
 
-std::vector<std::string> files_of(const PpkConfig&) {
-  return {"ppk.pos", "ppk.json", "residuals.csv", "ppk.resolved.yaml", "report.json", "report.html"};
+namespace {
+
+bool base_moves(const PpkConfig& config) {
+  return config.base_at.how == carrier::BaseAt::How::kMoving;
+}
+
+}  // namespace
+
+std::vector<std::string> files_of(const PpkConfig& config) {
+  std::vector<std::string> files{"ppk.pos", "ppk.json", "residuals.csv", "ppk.resolved.yaml", "report.json", "report.html"};
+  if (base_moves(config)) files.emplace_back("baselines.csv");
+  return files;
 }
 
 void write(const PpkConfig& config, const PpkResult& result, const std::filesystem::path& folder) {
@@ -19,6 +29,7 @@ void write(const PpkConfig& config, const PpkResult& result, const std::filesyst
   io::begin_results(folder / "ppk.json");
   io::write_gnss_pos(folder / "ppk.pos", result.fixes);
   io::write_text(folder / "residuals.csv", residuals_csv(result));
+  if (base_moves(config)) io::write_text(folder / "baselines.csv", baselines_csv(result));
   io::write_text(folder / "ppk.resolved.yaml", config.map.resolved_yaml());
   write_page(page, folder);
   io::write_text(folder / "ppk.json", ppk_json(config, result));

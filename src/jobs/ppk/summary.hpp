@@ -33,6 +33,8 @@ struct PpkSummary {
 [[nodiscard]] std::string ppk_json(const PpkConfig& config, const PpkResult& result);
 /// Residuals of all phases and codes, per epoch: residuals.csv
 [[nodiscard]] std::string residuals_csv(const PpkResult& result);
+/// North, east, down from a moving base to the rover at each fixed or float epoch, with sigmas: baselines.csv
+[[nodiscard]] std::string baselines_csv(const PpkResult& result);
 /// "G L1 C, L2 W; E E1 C/X": signals of rover and base
 [[nodiscard]] std::string signals_in_words(const carrier::SignalChoice& signals);
 
