@@ -58,7 +58,7 @@ class Reader {
   double at(double t) {
     switch (options_.kind) {
       case Kind::kOdometer:
-        return options_.metres_per_pulse ? pulses(t) : shown_speed(t) + options_.sd * white_();
+        return options_.metres_per_pulse ? pulses(t) : speed(t);
       case Kind::kHeading:
         return heading(t) / geo::kDegree;
       case Kind::kHeight:
@@ -73,6 +73,12 @@ class Reader {
     for (const AidOptions::Slip& slip : options_.slips)
       if (slip.when.contains(t)) speed *= 1.0 + slip.share;
     return speed;
+  }
+  // Wheels that stand show zero; a motion stops to within rounding.
+  double speed(double t) {
+    const double shown = shown_speed(t), noise = options_.sd * white_();
+    constexpr double kStanding = 1e-3;  // m/s
+    return shown > kStanding ? std::max(0.0, shown + noise) : 0.0;
   }
   // Counts of the distance, by the midpoint rule in steps of at most 5 ms.
   double pulses(double t) {

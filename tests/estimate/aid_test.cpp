@@ -113,6 +113,7 @@ TEST_P(Aids, DesignAgreesWithFiniteDifferencesOfTheInnovation) {
 INSTANTIATE_TEST_SUITE_P(
     Kinds, Aids,
     testing::Values(Measured{"{kind: odometer, point_m: [-1.1, 0.3, 0.9]}", {12.0, 0.0, 0.0}, {0.1, 0.0, 0.0}},
+                    Measured{"{kind: odometer, point_m: [-0.9, 0.2, 0.7]}", {0.0, 0.0, 0.0}, {0.1, 0.0, 0.0}},
                     Measured{
                         "{kind: heading, baseline_m: [1, 0.4, -0.1], offset_sd_deg: 3}", {0.7, 0.0, 0.0}, {0.01, 0.0, 0.0}},
                     Measured{"{kind: baseline, baseline_m: [1.2, 0.4, -0.1]}", {0.7, 0.9, 0.1}, {0.01, 0.01, 0.02}},
@@ -121,7 +122,7 @@ INSTANTIATE_TEST_SUITE_P(
                     Measured{"{kind: position, point_m: [0.2, 0.3, -1.5]}", {4.35e6, 5e5, 4.6e6}, {0.05, 0.05, 0.05}}),
     [](const auto& kind) {
       const std::string yaml = kind.param.yaml;
-      return yaml.substr(7, yaml.find_first_of(",}") - 7);
+      return yaml.substr(7, yaml.find_first_of(",}") - 7) + (kind.param.value.isZero() ? "_standing" : "");
     });
 
 // With the true attitude as measured, the innovation of a slightly wrong state is minus its error, whatever the attitude.

@@ -1,7 +1,8 @@
 // Odometer: speed of wheels, or a count of their pulses.
 //     z = (1 + k) |v + C (omega x p)|
-// The speed over ground of a point of the axle that does not steer. Without its direction it needs no mounting angles; that the
-// vehicle neither slides sideways nor lifts off is the business of the non-holonomic constraint.
+// and where the wheels do not turn, 0 = v + C (omega x p). The speed over ground of a point of the axle that does not steer.
+// Without its direction it needs no mounting angles; that the vehicle neither slides sideways nor lifts off is the business of
+// the non-holonomic constraint.
 
 #include <fmt/format.h>
 
@@ -56,7 +57,9 @@ class Odometer final : public Aid {
       sample.t = sample.t - fit.delay_s;
       if (!counts) sample.value *= fit.scale;
     }
-    std::erase_if(result, [](const record::AidSample& sample) { return std::abs(sample.value.x()) < kSlowest; });
+    std::erase_if(result, [](const record::AidSample& sample) {
+      return sample.value.x() != 0.0 && std::abs(sample.value.x()) < kSlowest;
+    });
     return result;
   }
 
@@ -66,16 +69,22 @@ class Odometer final : public Aid {
     const Eigen::Vector3d of_arm = C_b_e * context.omega_eb_b.cross(point_b_);
     const Eigen::Vector3d v_e = state.nav.v_eb_e + of_arm;
     const double speed = v_e.norm();
-    if (speed < kSlowest) return std::nullopt;
-    const double gain = 1.0 + (scale_sd_ > 0.0 ? state.x(first_state) : 0.0);
-    const Eigen::RowVector3d along = gain * v_e.transpose() / speed;
-    Linearised m;
-    m.kind = UpdateKind::kAid;
-    m.nu = Components::Constant(1, std::abs(sample.value.x()) - gain * speed);
     Eigen::MatrixXd H = Eigen::MatrixXd::Zero(3, context.layout.size());
     H.block<3, 3>(0, kVel).setIdentity();
     H.block<3, 3>(0, kPsi) = -geo::skew(of_arm);
     add_rate(-C_b_e * geo::skew(point_b_), context, H);
+    Linearised m;
+    m.kind = UpdateKind::kAid;
+    if (sample.value.x() == 0.0) {
+      m.nu = -v_e;
+      m.H = std::move(H);
+      m.R = sample.sd.x() * sample.sd.x() * Eigen::Matrix3d::Identity();
+      return m;
+    }
+    if (speed < kSlowest) return std::nullopt;
+    const double gain = 1.0 + (scale_sd_ > 0.0 ? state.x(first_state) : 0.0);
+    const Eigen::RowVector3d along = gain * v_e.transpose() / speed;
+    m.nu = Components::Constant(1, std::abs(sample.value.x()) - gain * speed);
     m.H = along * H;
     if (scale_sd_ > 0.0) m.H(0, first_state) = speed;
     m.R = ComponentCov::Constant(1, 1, sample.sd.x() * sample.sd.x());
