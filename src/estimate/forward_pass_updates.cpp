@@ -121,7 +121,7 @@ void ForwardPass::note_refused_aids() {
     const Count& count = aid_counts_[a];
     if (static_cast<double>(count.refused) <= kMany * static_cast<double>(count.met)) continue;
     result_.events.push_back({record::Event::Severity::kWarning, "aid_refused",
-                              fmt::format("{} of {} samples of {} contradict the other measurements and were refused: its "
+                              fmt::format("{} of {} samples of the {} contradict the other measurements and were refused: its "
                                           "times, unit, mounting or sigma are not what the run file says",
                                           count.refused, count.met, mission_.aids[a].name),
                               state_.nav.t, static_cast<long>(count.refused)});

@@ -99,6 +99,16 @@ estimate::FilterState drawn_start(const estimate::ForwardFilter& filter, const r
   return start;
 }
 
+Eigen::Vector3d rate_at(const estimate::StateLayout& layout, const Eigen::Vector3d& omega, const Eigen::VectorXd& x0,
+                        const estimate::FilterState& state) {
+  Eigen::Vector3d rate = omega;
+  for (const auto& block : layout.sensors())
+    if (block.sensor == noise::Sensor::kGyro)
+      rate -=
+          (state.x(block.offset) - x0(block.offset)) * (block.signal_b ? block.signal_b->dot(omega) : 1.0) * block.response_b;
+  return rate;
+}
+
 Eigen::VectorXd normal_vector(Eigen::Index size, std::mt19937_64& random) {
   std::normal_distribution<double> normal;
   return Eigen::VectorXd::NullaryExpr(size, [&] { return normal(random); });

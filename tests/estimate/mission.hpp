@@ -57,6 +57,11 @@ struct RecordingOptions {
 [[nodiscard]] estimate::FilterState drawn_start(const estimate::ForwardFilter& filter, const record::NavState& truth,
                                                 const StartSd& sd, std::mt19937_64& random);
 
+/// The rate that the filter would have at `state` if it had `omega` with the sensor states x0: measured rate minus estimated
+/// errors. For finite differences.
+[[nodiscard]] Eigen::Vector3d rate_at(const estimate::StateLayout& layout, const Eigen::Vector3d& omega,
+                                      const Eigen::VectorXd& x0, const estimate::FilterState& state);
+
 /// A vector of independent normal numbers.
 [[nodiscard]] Eigen::VectorXd normal_vector(Eigen::Index size, std::mt19937_64& random);
 /// A symmetric positive definite matrix with eigenvalues near 1.

@@ -43,13 +43,8 @@ class Updates : public testing::TestWithParam<UpdateKind> {
     return state;
   }
 
-  // The rate as the filter would have it with other gyro errors: measured rate minus estimated errors.
   [[nodiscard]] Linearised linearised(const FilterState& state, const Eigen::VectorXd& x0) const {
-    Eigen::Vector3d omega = omega_;
-    for (const auto& block : layout_.sensors())
-      if (block.sensor == noise::Sensor::kGyro)
-        omega -= (state.x(block.offset) - x0(block.offset)) * (block.signal_b ? block.signal_b->dot(omega_) : 1.0) *
-                 block.response_b;
+    const Eigen::Vector3d omega = test::rate_at(layout_, omega_, x0, state);
     const UpdateContext context{layout_, {0.4, -0.6, -1.3}, omega, C_n_e_};
     switch (GetParam()) {
       case UpdateKind::kGnssPosition:

@@ -6,6 +6,7 @@
 #include <fstream>
 
 #include "coast/io/writers.hpp"
+#include "coast/io/yaml.hpp"
 #include "coast/jobs/process.hpp"
 #include "coast/jobs/simulate.hpp"
 #include "process/summary.hpp"
@@ -64,6 +65,19 @@ TEST_F(SimulatedAids, AreUsedAndTheirErrorsFound) {
   EXPECT_NE(summary.find("\"odometer_2\""), std::string::npos);
   EXPECT_NE(innovations_csv(result).find(",odometer_2,1,"), std::string::npos);
   EXPECT_EQ(result.verdict.standing(), Standing::kGood) << result.verdict.line();
+}
+
+TEST_F(SimulatedAids, OneThatContradictsTheOthersMakesTheResultDoubtful) {
+  RunConfig run = run_with("");
+  const config::Node wrong =
+      io::parse_yaml("{point_m: [-1.2, 0, 0.5], scale: 1.4, delay_s: 0.1}", (folder_.path() / "wrong.yaml").string());
+  run.aids.resize(1);
+  run.aids.front().aid = estimate::aid_kinds().front().from(wrong);
+  const ProcessResult result = process(run, load(run, Progress{}), TrajectorySinks{}, Progress{});
+  EXPECT_EQ(result.verdict.standing(), Standing::kDoubtful);
+  EXPECT_NE(result.verdict.line().find("samples of the odometer contradict the filter"), std::string::npos)
+      << result.verdict.line();
+  EXPECT_LT(result.reference->summary(*result.reference->smoothed).position.rms.norm(), 0.02);  // it does no harm
 }
 
 TEST_F(SimulatedAids, BridgeAnOutageInEverySmoother) {

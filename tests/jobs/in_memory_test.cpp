@@ -207,6 +207,7 @@ seed: 5
                           &length, &quality),
               10)
         << row;
+    EXPECT_GT(std::min({sdn, sde, sdd}), 0.0) << row;  // or it could not be read back
     if (quality != 1) continue;
     const geo::GpsTime t = geo::GpsTime::from_week(static_cast<int>(week), sow);
     const auto truth = std::ranges::lower_bound(simulated.mission.truth.states, t - 1e-3, {}, &record::NavState::t);

@@ -109,7 +109,7 @@ struct AppliedUpdate {
 /// Innovation with its covariance, before it is used.
 struct Innovation {
   ComponentCov S;       ///< m x m
-  Eigen::MatrixXd PHt;  ///< n x m, covariance of d with -nu: P H' (+ M)
+  Eigen::MatrixXd PHt;  ///< n x m, covariance of d with -nu: P H', less M
   double nis = 0.0;     ///< nu' S^-1 nu
   double log_likelihood = 0.0;
 };

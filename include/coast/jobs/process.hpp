@@ -38,8 +38,9 @@ struct Judgement {
   std::vector<study::Cause> causes = {};  ///< by likelihood, the likeliest first
   bool accepted = false;                  ///< by the configuration
   [[nodiscard]] Standing standing() const;
-  /// Whether the only problem is jumps of GNSS: these are not an error in the configuration.
-  [[nodiscard]] bool only_jumps() const;
+  /// Whether every check that fails names its cause itself, jumps of GNSS or refused aids, so that no mistake in the treatment
+  /// of IMU and fixes is to be sought.
+  [[nodiscard]] bool names_its_cause() const;
   /// One line: "good: .." or the failed checks and the likely cause.
   [[nodiscard]] std::string line() const;
 };

@@ -21,6 +21,26 @@ enum class OdometerUnit { kMetresPerSecond, kKilometresPerHour, kMilesPerHour, k
 constexpr std::array kSpeedOf{1.0, 1.0 / 3.6, 0.44704, 1852.0 / 3600.0, 1.0};
 constexpr double kSlowest = 0.5;  // m/s: below it a speed has no direction in the filter's state
 
+// Wheel sensors show zero below some speed too: a standstill is where they do so for a while. Between zero and the slowest
+// speed that has a direction nothing is measured.
+std::vector<record::AidSample> without_slow_motion(const std::vector<record::AidSample>& samples) {
+  constexpr double kWhile = 1.0;  // s before and behind
+  std::vector<record::AidSample> kept;
+  for (std::size_t i = 0, turned = 0, turns = 0; i < samples.size(); ++i) {
+    const record::AidSample& sample = samples[i];
+    if (sample.value.x() != 0.0) {
+      turned = i + 1;  // index of the last one that is not zero, and 1
+      if (std::abs(sample.value.x()) >= kSlowest) kept.push_back(sample);
+      continue;
+    }
+    for (turns = std::max(turns, i); turns < samples.size() && samples[turns].value.x() == 0.0;) ++turns;
+    const bool stood = turned == 0 || sample.t - samples[turned - 1].t >= kWhile;
+    const bool will_stand = turns == samples.size() || samples[turns].t - sample.t >= kWhile;
+    if (stood && will_stand) kept.push_back(sample);
+  }
+  return kept;
+}
+
 class Odometer final : public Aid {
  public:
   explicit Odometer(const config::Node& node)
@@ -33,7 +53,7 @@ class Odometer final : public Aid {
     to_si_ = kSpeedOf.at(unit);
     // Read only if present: a default in the resolved file would state them.
     if (node.find("scale")) scale_ = node.number_within("scale", 1.0, 1e-6, 1e3);
-    if (node.find("delay_s")) delay_s_ = node.number_within("delay_s", 0.0, -10.0, 10.0);
+    if (node.find("delay_s")) delay_s_ = node.number_within("delay_s", 0.0, -60.0, 60.0);
   }
 
   [[nodiscard]] std::vector<AidState> states() const override {
@@ -51,16 +71,13 @@ class Odometer final : public Aid {
     if (!fit.seen && counts && !scale_)
       throw InputError({rows.source, 0, "pulses of unknown length, and no fixes in motion to find it with",
                         "the length of a pulse", "Give `scale:`, metres per pulse."});
+    refuse_misfit(fit, rows);
     tell(fit, rows, told);
     std::vector<record::AidSample> result = counts ? by_count(in_si, fit.scale) : by_speed(in_si);
-    for (record::AidSample& sample : result) {
-      sample.t = sample.t - fit.delay_s;
-      if (!counts) sample.value *= fit.scale;
-    }
-    std::erase_if(result, [](const record::AidSample& sample) {
-      return sample.value.x() != 0.0 && std::abs(sample.value.x()) < kSlowest;
-    });
-    return result;
+    for (record::AidSample& sample : result) sample.t = sample.t - fit.delay_s;
+    if (!counts)
+      for (record::AidSample& sample : result) sample.value *= fit.scale;  // the stated sigma is that of a true speed
+    return without_slow_motion(result);
   }
 
   [[nodiscard]] std::optional<Linearised> linearise(const record::AidSample& sample, const FilterState& state,
@@ -132,6 +149,20 @@ class Odometer final : public Aid {
     return result;
   }
 
+  // With a scale and a delay that have been fitted to something else, later outages would follow that.
+  static void refuse_misfit(const OdometerFit& fit, const record::AidRecording& rows) {
+    constexpr double kLargest = 0.2, kSmall = 0.05;
+    const bool explains = fit.misfit < kSmall || fit.misfit < 0.5 * fit.spread;
+    if (!fit.seen || (explains && fit.misfit < kLargest)) return;
+    throw InputError(
+        {rows.source, 0,
+         fmt::format("over {} stretches between fixes the distances of the odometer differ from theirs by {:.0f} %, "
+                     "whatever its scale and delay",
+                     fit.stretches, 100.0 * fit.misfit),
+         "wheel speeds or pulses of the vehicle that carries the antenna",
+         "Check column, unit, week and time scale. With `scale` and `delay_s` stated it is used as it is."});
+  }
+
   void tell(const OdometerFit& fit, const record::AidRecording& rows, record::Events& told) const {
     if (scale_ && delay_s_) return;
     if (!fit.seen) {
@@ -142,12 +173,16 @@ class Odometer final : public Aid {
                       std::nullopt, 1});
       return;
     }
-    told.push_back({record::Event::Severity::kInfo, "odometer_found",
-                    fmt::format("{}: from {} stretches between fixes, the odometer's scale is {:.5g}{} and its rows are "
-                                "{:.3f} s late (`scale: {:.5g}`, `delay_s: {:.3f}`)",
-                                rows.source, fit.stretches, fit.scale, unit_ == OdometerUnit::kPulses ? " m per pulse" : "",
-                                fit.delay_s, fit.scale, fit.delay_s),
-                    std::nullopt, 1});
+    constexpr double kLongestDelay = 1.0;  // s: longer ones are no delays of a bus
+    const bool shifted = std::abs(fit.delay_s) > kLongestDelay;
+    told.push_back(
+        {shifted ? record::Event::Severity::kWarning : record::Event::Severity::kInfo, "odometer_found",
+         fmt::format("{}: from {} stretches between fixes, the odometer's scale is {:.5g}{} and its rows are {:.3f} s {} "
+                     "(`scale: {:.5g}`, `delay_s: {:.3f}`).{}",
+                     rows.source, fit.stretches, fit.scale, unit_ == OdometerUnit::kPulses ? " m per pulse" : "",
+                     std::abs(fit.delay_s), fit.delay_s < 0.0 ? "early" : "late", fit.scale, fit.delay_s,
+                     shifted ? " Are its times UTC where GPS time is meant, or the other way round?" : ""),
+         std::nullopt, 1});
   }
 
   Eigen::Vector3d point_b_;

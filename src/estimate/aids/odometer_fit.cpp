@@ -8,10 +8,12 @@ namespace coast::estimate {
 
 namespace {
 
+/// Between two fixes, in motion.
 struct Stretch {
   geo::GpsTime from;
   geo::GpsTime to;
   double chord = 0.0;
+  double sd = 0.0;  ///< of the chord
 };
 
 constexpr std::size_t kFewest = 30;                // stretches in motion
@@ -28,7 +30,9 @@ std::vector<Stretch> stretches_in_motion(const record::GnssRecording& gnss) {
     if (to == fixes.size()) break;
     const double span = fixes[to].t - fixes[from].t;
     const double chord = (fixes[to].r_ea_e - fixes[from].r_ea_e).norm();
-    if (span <= kLongest && chord > kInMotion * span) found.push_back({fixes[from].t, fixes[to].t, chord});
+    if (span > kLongest || chord <= kInMotion * span) continue;
+    const double sd = std::sqrt((fixes[from].position_cov_n.trace() + fixes[to].position_cov_n.trace()) / 3.0);
+    found.push_back({fixes[from].t, fixes[to].t, chord, sd});
   }
   if (found.size() <= kMost) return found;
   std::vector<Stretch> some;
@@ -45,30 +49,40 @@ double median(std::vector<double> values) {
 struct Agreement {
   double scale = 1.0;
   double cost = std::numeric_limits<double>::infinity();  ///< mean squared difference, each limited, m^2
-  std::size_t stretches = 0;
+  double misfit = 0.0;                                    ///< as in OdometerFit
+  double spread = 0.0;                                    ///< likewise
+  std::size_t stretches = 0;                              ///< within the rows
 };
 
 Agreement agreement_at(const TravelledDistance& distance, const std::vector<Stretch>& stretches, double delay,
                        std::optional<double> scale) {
-  std::vector<double> chords, driven, ratios;
+  std::vector<double> chords, driven, ratios, sds;
   for (const Stretch& stretch : stretches) {
     const std::optional<double> d = distance.between(stretch.from + delay, stretch.to + delay);
-    if (!d || !(*d > 0.0)) continue;
+    if (!d) continue;
     chords.push_back(stretch.chord);
+    sds.push_back(stretch.sd);
     driven.push_back(*d);
-    ratios.push_back(stretch.chord / *d);
+    if (*d > 0.0) ratios.push_back(stretch.chord / *d);
   }
   Agreement result;
   result.stretches = chords.size();
   if (chords.size() < kFewest) return result;
-  result.scale = scale ? *scale : median(ratios);
-  constexpr double kLimit = 4.0;  // times the median: gross errors and slip, whose number is all that may count
+  if (scale)
+    result.scale = *scale;
+  else if (!ratios.empty())
+    result.scale = median(ratios);
   std::vector<double> differences;
   for (std::size_t i = 0; i < chords.size(); ++i) differences.push_back(std::abs(chords[i] - result.scale * driven[i]));
-  const double limit = kLimit * median(differences);
+  const double usual = median(differences);
+  constexpr double kLimit = 4.0;  // times the median: gross errors and slip, whose number is all that may count
   double sum = 0.0;
-  for (const double difference : differences) sum += std::pow(std::min(difference, limit), 2);
+  for (const double difference : differences) sum += std::pow(std::min(difference, kLimit * usual), 2);
   result.cost = sum / static_cast<double>(chords.size());
+  const double chord = median(chords);
+  result.misfit = std::max(0.0, usual - 2.0 * median(sds)) / chord;
+  for (double& c : chords) c = std::abs(c - chord);
+  result.spread = median(chords) / chord;
   return result;
 }
 
@@ -90,35 +104,45 @@ double vertex(const std::vector<double>& y) {
   return curvature > 0.0 ? std::clamp(-0.5 * s_sy / s_ss / curvature, -0.5 * n, 0.5 * n) : 0.0;
 }
 
-// First the best step within a second, then parabolas about it. They are as wide as they are because the rounding of pulses
-// is other noise at each delay.
+// The best step within a second, or one farther away if it halves the cost: rows in UTC are 18 s from GPS time. About it
+// parabolas, which are as wide as they are because the rounding of pulses is other noise at each delay.
 double delay_of(const TravelledDistance& distance, const std::vector<Stretch>& stretches, std::optional<double> scale) {
   const auto costs = [&](double centre, double step, int steps) {
     std::vector<double> cost;
     for (int i = -steps; i <= steps; ++i) cost.push_back(agreement_at(distance, stretches, centre + i * step, scale).cost);
     return cost;
   };
-  constexpr double kCoarse = 0.05, kFine = 0.01;  // s
-  constexpr int kCoarseSteps = 20, kFineSteps = 10;
-  const std::vector<double> coarse = costs(0.0, kCoarse, kCoarseSteps);
-  const auto least = std::ranges::min_element(coarse) - coarse.begin();
-  double best = kCoarse * static_cast<double>(least - kCoarseSteps);
+  struct Best {
+    double delay;
+    double cost;
+  };
+  const auto best_within = [&](double centre, double step, int steps) -> Best {
+    const std::vector<double> cost = costs(centre, step, steps);
+    const auto least = std::ranges::min_element(cost);
+    return {centre + step * static_cast<double>(least - cost.begin() - steps), *least};
+  };
+  constexpr double kStep = 0.05, kWideStep = 0.2, kFineStep = 0.01;  // s
+  constexpr int kSteps = 20, kWideSteps = 150, kFineSteps = 10;
+  Best best = best_within(0.0, kStep, kSteps);
+  const Best far = best_within(0.0, kWideStep, kWideSteps);
+  if (far.cost < 0.5 * best.cost) best = best_within(far.delay, kStep, kSteps);
   for (int round = 0; round < 2; ++round) {
-    const std::vector<double> fine = costs(best, kFine, kFineSteps);
-    if (std::isfinite(*std::ranges::max_element(fine))) best += kFine * vertex(fine);
+    const std::vector<double> fine = costs(best.delay, kFineStep, kFineSteps);
+    if (std::isfinite(*std::ranges::max_element(fine))) best.delay += kFineStep * vertex(fine);
   }
-  return best;
+  return best.delay;
 }
 
 TravelledDistance accumulated(const record::AidRecording& rows,
                               double (*over)(const record::AidSample&, const record::AidSample&)) {
   TravelledDistance result;
-  double distance = 0.0, gaps = 0.0;
+  double distance = 0.0;
+  std::size_t gaps = 0;
   for (std::size_t i = 0; i < rows.samples.size(); ++i) {
     if (i > 0) {
       const double step = over(rows.samples[i - 1], rows.samples[i]);
       if (step < 0.0 || rows.samples[i].t - rows.samples[i - 1].t > kLongestOdometerGap)
-        gaps += 1.0;
+        ++gaps;
       else
         distance += step;
     }
@@ -157,13 +181,13 @@ TravelledDistance distance_by_count(const record::AidRecording& rows) {
 
 OdometerFit fit_odometer(const TravelledDistance& distance, const record::GnssRecording& gnss, std::optional<double> scale,
                          std::optional<double> delay_s) {
-  OdometerFit fit{false, scale.value_or(1.0), delay_s.value_or(0.0), 0};
+  OdometerFit fit{false, scale.value_or(1.0), delay_s.value_or(0.0), 0, 0.0, 0.0};
   if (scale && delay_s) return fit;
   const std::vector<Stretch> stretches = stretches_in_motion(gnss);
   const double delay = delay_s ? *delay_s : delay_of(distance, stretches, scale);
   const Agreement found = agreement_at(distance, stretches, delay, scale);
   if (found.stretches < kFewest) return fit;
-  return {true, found.scale, delay, found.stretches};
+  return {true, found.scale, delay, found.stretches, found.misfit, found.spread};
 }
 
 }  // namespace coast::estimate

@@ -15,7 +15,7 @@ inline constexpr double kLongestOdometerGap = 1.5;  ///< s between rows; over lo
 struct TravelledDistance {
   std::vector<geo::GpsTime> t;
   std::vector<double> distance;
-  std::vector<double> bridged;  ///< number of gaps up to each time
+  std::vector<std::size_t> bridged;  ///< number of gaps up to each time
   /// Between two instants; nothing if they are not within the rows, or a gap lies between them.
   [[nodiscard]] std::optional<double> between(geo::GpsTime from, geo::GpsTime to) const;
 };
@@ -28,9 +28,12 @@ struct OdometerFit {
   double scale = 1.0;    ///< true distance over that of the odometer
   double delay_s = 0.0;  ///< a row tagged t is of t - delay
   std::size_t stretches = 0;
+  /// Median difference of the chords from the odometer's distances beyond the noise of the fixes, relative to the chords.
+  double misfit = 0.0;
+  double spread = 0.0;  ///< median difference of the chords from their median, relative to it: the misfit of a constant
 };
 /// The scale is the median ratio of chords between fixes to the odometer's distances, the delay that for which they differ
-/// least (mean squares, each limited, so that gross errors of fixes and slip do not matter), found within a second.
+/// least (mean squares, each limited, so that gross errors of fixes and slip do not matter), within half a minute.
 /// @param scale, delay_s  where stated, these are kept
 [[nodiscard]] OdometerFit fit_odometer(const TravelledDistance& distance, const record::GnssRecording& gnss,
                                        std::optional<double> scale, std::optional<double> delay_s);

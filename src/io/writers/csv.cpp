@@ -4,35 +4,30 @@
 #include <fmt/format.h>
 
 #include "../state_columns.hpp"
+#include "text_trajectory.hpp"
 #include "writers.hpp"
 
 namespace coast::io {
 
 namespace {
 
-class CsvWriter final : public TrajectoryWriter {
+class CsvWriter final : public TextTrajectory {
  public:
-  CsvWriter(const std::filesystem::path& path, bool covariance) : file_(path), text_(file_), covariance_(covariance) {
-    text_.put(fmt::format("{},{}", kTimeAndPlaceColumns, kMotionColumns));
-    if (covariance_) text_.put(fmt::format(",{}", kCovarianceColumns));
-    text_.end_line();
+  CsvWriter(const std::filesystem::path& path, bool covariance) : TextTrajectory(path), covariance_(covariance) {
+    text().put(fmt::format("{},{}", kTimeAndPlaceColumns, kMotionColumns));
+    if (covariance_) text().put(fmt::format(",{}", kCovarianceColumns));
+    text().end_line();
   }
 
   void write(const record::TrajectoryEpoch& epoch) override {
     const LocalState s = local_state(epoch.nav);
-    put_time_and_place(text_, epoch.nav.t, s.p);
-    put_motion(text_, s);
-    if (covariance_) put_covariance(text_, epoch.cov, s.attitude);
-    text_.end_line();
-  }
-  void close() override {
-    text_.flush();
-    file_.commit();
+    put_time_and_place(text(), epoch.nav.t, s.p);
+    put_motion(text(), s);
+    if (covariance_) put_covariance(text(), epoch.cov, s.attitude);
+    text().end_line();
   }
 
  private:
-  AtomicFile file_;
-  TextBuffer text_;
   bool covariance_;
 };
 

@@ -3,68 +3,63 @@
 
 #include <fmt/format.h>
 
-#include "../text_buffer.hpp"
 #include "coast/geo/earth.hpp"
 #include "coast/geo/units.hpp"
 #include "quality_tracks.hpp"
+#include "text_trajectory.hpp"
 #include "writers.hpp"
 
 namespace coast::io {
 
 namespace {
 
-class GeoJsonWriter final : public TrajectoryWriter {
+class GeoJsonWriter final : public TextTrajectory {
  public:
   GeoJsonWriter(const std::filesystem::path& path, const WriterOptions& options)
-      : file_(path),
-        text_(file_),
+      : TextTrajectory(path),
         tracks_(options.min_step_m, [this](const auto& quality, const auto& track) { put_feature(quality, track); }) {
-    text_.put("{\"type\": \"FeatureCollection\", \"features\": [");
+    text().put("{\"type\": \"FeatureCollection\", \"features\": [");
   }
   void write(const record::TrajectoryEpoch& epoch) override { tracks_.add(epoch); }
-  void close() override {
-    tracks_.finish();
-    text_.put("\n]}\n");
-    text_.flush();
-    file_.commit();
-  }
 
  private:
+  void finish() override {
+    tracks_.finish();
+    text().put("\n]}\n");
+  }
   void put_feature(const TrackQuality& quality, const std::vector<TrackPoint>& track) {
     const bool line = track.size() > 1;  // a line has two points at least
-    text_.put(first_ ? "\n" : ",\n");
+    text().put(first_ ? "\n" : ",\n");
     first_ = false;
-    text_.put(
+    text().put(
         fmt::format("{{\"type\": \"Feature\", \"properties\": {{\"quality\": \"{}\", \"stroke\": \"#{}\", \"coordTimes\": [",
                     quality.name, quality.rgb));
     for (std::size_t i = 0; i < track.size(); ++i) {
-      text_.put(fmt::format("{}\"{}\"", i == 0 ? "" : ",", utc_text(track[i].t)));
-      if (i % kPerLine == kPerLine - 1) text_.end_line();
+      text().put(fmt::format("{}\"{}\"", i == 0 ? "" : ",", utc_text(track[i].t)));
+      if (i % kPerLine == kPerLine - 1) text().end_line();
     }
-    text_.put(fmt::format("]}}, \"geometry\": {{\"type\": \"{}\", \"coordinates\": {}", line ? "LineString" : "Point",
-                          line ? "[" : ""));
+    text().put(fmt::format("]}}, \"geometry\": {{\"type\": \"{}\", \"coordinates\": {}", line ? "LineString" : "Point",
+                           line ? "[" : ""));
     for (std::size_t i = 0; i < track.size(); ++i) {
-      if (i > 0) text_.put(',');
+      if (i > 0) text().put(',');
       put_place(track[i].r_e);
-      if (i % kPerLine == kPerLine - 1) text_.end_line();
+      if (i % kPerLine == kPerLine - 1) text().end_line();
     }
-    text_.put(line ? "]}}" : "}}");
+    text().put(line ? "]}}" : "}}");
   }
 
   void put_place(const Eigen::Vector3d& r_e) {
     const geo::Geodetic p = geo::geodetic_from_ecef(r_e);
-    text_.put('[');
-    text_.put_fixed(p.longitude / geo::kDegree, 9);
-    text_.put(',');
-    text_.put_fixed(p.latitude / geo::kDegree, 9);
-    text_.put(',');
-    text_.put_fixed(p.height, 4);
-    text_.put(']');
+    text().put('[');
+    text().put_fixed(p.longitude / geo::kDegree, 9);
+    text().put(',');
+    text().put_fixed(p.latitude / geo::kDegree, 9);
+    text().put(',');
+    text().put_fixed(p.height, 4);
+    text().put(']');
   }
 
   static constexpr std::size_t kPerLine = 8;  // lines of a bounded length, so that text goes to the file in blocks
-  AtomicFile file_;
-  TextBuffer text_;
   bool first_ = true;
   QualityTracks tracks_;
 };

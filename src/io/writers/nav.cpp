@@ -2,45 +2,38 @@
 
 #include "../state_columns.hpp"
 #include "coast/geo/units.hpp"
+#include "text_trajectory.hpp"
 #include "writers.hpp"
 
 namespace coast::io {
 
 namespace {
 
-class NavWriter final : public TrajectoryWriter {
+class NavWriter final : public TextTrajectory {
  public:
-  explicit NavWriter(const std::filesystem::path& path) : file_(path), text_(file_) {}
+  explicit NavWriter(const std::filesystem::path& path) : TextTrajectory(path) {}
 
   void write(const record::TrajectoryEpoch& epoch) override {
     const LocalState s = local_state(epoch.nav);
-    text_.put_integer(epoch.nav.t.week(), 4);
-    text_.put(' ');
-    text_.put_fixed(epoch.nav.t.sow(), 9, 16);
-    text_.put(' ');
-    text_.put_fixed(s.p.latitude / geo::kDegree, 11, 15);
-    text_.put(' ');
-    text_.put_fixed(s.p.longitude / geo::kDegree, 11, 16);
-    text_.put(' ');
-    text_.put_fixed(s.p.height, 5, 11);
+    text().put_integer(epoch.nav.t.week(), 4);
+    text().put(' ');
+    text().put_fixed(epoch.nav.t.sow(), 9, 16);
+    text().put(' ');
+    text().put_fixed(s.p.latitude / geo::kDegree, 11, 15);
+    text().put(' ');
+    text().put_fixed(s.p.longitude / geo::kDegree, 11, 16);
+    text().put(' ');
+    text().put_fixed(s.p.height, 5, 11);
     for (const double v : s.v_eb_n) {
-      text_.put(' ');
-      text_.put_fixed(v, 6, 11);
+      text().put(' ');
+      text().put_fixed(v, 6, 11);
     }
     for (const double angle : {s.attitude.roll, s.attitude.pitch, s.attitude.yaw}) {
-      text_.put(' ');
-      text_.put_fixed(angle / geo::kDegree, 9, 14);
+      text().put(' ');
+      text().put_fixed(angle / geo::kDegree, 9, 14);
     }
-    text_.end_line();
+    text().end_line();
   }
-  void close() override {
-    text_.flush();
-    file_.commit();
-  }
-
- private:
-  AtomicFile file_;
-  TextBuffer text_;
 };
 
 }  // namespace

@@ -6,6 +6,7 @@
 
 #include "../state_columns.hpp"
 #include "coast/geo/units.hpp"
+#include "text_trajectory.hpp"
 #include "writers.hpp"
 
 namespace coast::io {
@@ -46,10 +47,10 @@ NmeaQuality nmea_quality(const std::optional<record::GnssSupport>& gnss) {
   }
 }
 
-class NmeaWriter final : public TrajectoryWriter {
+class NmeaWriter final : public TextTrajectory {
  public:
   NmeaWriter(const std::filesystem::path& path, const WriterOptions& options)
-      : file_(path), text_(file_), geoid_height_(options.geoid_height_m), covariance_(options.covariance) {}
+      : TextTrajectory(path), geoid_height_(options.geoid_height_m), covariance_(options.covariance) {}
 
   void write(const record::TrajectoryEpoch& epoch) override {
     constexpr std::int64_t kMillisecond = 1'000'000;
@@ -66,10 +67,6 @@ class NmeaWriter final : public TrajectoryWriter {
                     circle(std::atan2(s.v_eb_n.y(), s.v_eb_n.x()), 2), utc.day, utc.month, utc.year % 100, quality.mode));
     put(fmt::format("GNHDT,{:.3f},T", circle(s.attitude.yaw, 3)));
     put_pashr(clock, s.attitude, epoch.cov.attitude, quality.pashr);
-  }
-  void close() override {
-    text_.flush();
-    file_.commit();
   }
 
  private:
@@ -102,12 +99,10 @@ class NmeaWriter final : public TrajectoryWriter {
   void put(const std::string& sentence) {
     unsigned sum = 0;
     for (const char c : sentence) sum ^= static_cast<unsigned char>(c);
-    text_.put(fmt::format("${}*{:02X}\r", sentence, sum));
-    text_.end_line();
+    text().put(fmt::format("${}*{:02X}\r", sentence, sum));
+    text().end_line();
   }
 
-  AtomicFile file_;
-  TextBuffer text_;
   std::optional<double> geoid_height_;
   bool covariance_;
 };

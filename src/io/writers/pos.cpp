@@ -5,9 +5,9 @@
 #include <algorithm>
 #include <cmath>
 
-#include "../text_buffer.hpp"
 #include "coast/geo/earth.hpp"
 #include "coast/geo/units.hpp"
+#include "text_trajectory.hpp"
 #include "writers.hpp"
 
 namespace coast::io {
@@ -103,12 +103,12 @@ void put_pos_line(TextBuffer& text, const record::GnssFix& fix, int quality) {
 }
 
 /// Q, ns, age and ratio are those of `gnss`; without GNSS, Q = 7 (dead reckoning) and ns = 0.
-class PosWriter final : public TrajectoryWriter {
+class PosWriter final : public TextTrajectory {
  public:
-  explicit PosWriter(const std::filesystem::path& path) : file_(path), text_(file_) {
-    text_.put(kPosHeader);
-    text_.put(kPosVelocityHeader);
-    text_.end_line();
+  explicit PosWriter(const std::filesystem::path& path) : TextTrajectory(path) {
+    text().put(kPosHeader);
+    text().put(kPosVelocityHeader);
+    text().end_line();
   }
 
   void write(const record::TrajectoryEpoch& epoch) override {
@@ -122,16 +122,8 @@ class PosWriter final : public TrajectoryWriter {
     fix.satellites = gnss.satellites;
     fix.age_s = gnss.age_s;
     fix.ratio = gnss.ratio;
-    put_pos_line(text_, fix, epoch.gnss ? quality_number(gnss.quality) : kDeadReckoning);
+    put_pos_line(text(), fix, epoch.gnss ? quality_number(gnss.quality) : kDeadReckoning);
   }
-  void close() override {
-    text_.flush();
-    file_.commit();
-  }
-
- private:
-  AtomicFile file_;
-  TextBuffer text_;
 };
 
 }  // namespace

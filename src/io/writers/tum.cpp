@@ -4,9 +4,9 @@
 
 #include <Eigen/Geometry>
 
-#include "../text_buffer.hpp"
 #include "coast/geo/units.hpp"
 #include "local_pose.hpp"
+#include "text_trajectory.hpp"
 #include "writers.hpp"
 
 namespace coast::io {
@@ -20,9 +20,9 @@ std::string unix_seconds(geo::GpsTime t) {
   return fmt::format("{}.{:09}", ns / kBillion, ns % kBillion);
 }
 
-class TumWriter final : public TrajectoryWriter {
+class TumWriter final : public TextTrajectory {
  public:
-  explicit TumWriter(const std::filesystem::path& path) : file_(path), text_(file_) {}
+  explicit TumWriter(const std::filesystem::path& path) : TextTrajectory(path) {}
 
   void write(const record::TrajectoryEpoch& epoch) override {
     if (!origin_) begin(epoch.nav);
@@ -30,32 +30,26 @@ class TumWriter final : public TrajectoryWriter {
     Eigen::Quaterniond q(exchanged_axes() * origin_->rotation().transpose() * epoch.nav.q_b_e.toRotationMatrix() *
                          forward_left_up());
     if (q.w() < 0.0) q.coeffs() = -q.coeffs();
-    text_.put(unix_seconds(epoch.nav.t));
+    text().put(unix_seconds(epoch.nav.t));
     for (const double x : {r_n.y(), r_n.x(), -r_n.z()}) put(x, 6);
     for (const double x : {q.x(), q.y(), q.z(), q.w()}) put(x, 12);
-    text_.end_line();
-  }
-  void close() override {
-    text_.flush();
-    file_.commit();
+    text().end_line();
   }
 
  private:
   void begin(const record::NavState& first) {
     const geo::Geodetic p = geo::geodetic_from_ecef(first.r_eb_e);
     origin_.emplace(p);
-    text_.put(
+    text().put(
         fmt::format("# seconds since 1970 (UTC), x y z (m), qx qy qz qw: body forward-left-up to east-north-up\n"
                     "# origin, latitude and longitude in deg, ellipsoidal height in m: {:.11f} {:.11f} {:.5f}\n",
                     p.latitude / geo::kDegree, p.longitude / geo::kDegree, p.height));
   }
   void put(double value, int decimals) {
-    text_.put(' ');
-    text_.put_fixed(value, decimals);
+    text().put(' ');
+    text().put_fixed(value, decimals);
   }
 
-  AtomicFile file_;
-  TextBuffer text_;
   std::optional<geo::LocalFrame> origin_;
 };
 

@@ -56,7 +56,7 @@ void judge_result(const Work& work, Delivery& delivery, const study::Excerpt& ex
     checks.push_back(std::move(*check));
   Judgement& verdict = result.verdict = judge(result, std::move(checks));
   verdict.accepted = work.config.accept;
-  if (verdict.standing() == Standing::kGood || verdict.only_jumps()) return;
+  if (verdict.standing() == Standing::kGood || verdict.names_its_cause()) return;
   work.progress("looking for the cause", 0.0);
   verdict.causes = study::rank_causes(excerpt, stated);
   if (const std::string cause = told(verdict.causes); !cause.empty()) verdict.likely_cause = cause;

@@ -237,7 +237,7 @@ std::string summary_text(const ProcessResult& result) {
                                  result.nis.mean, result.nis.expected);
   text += "start: " + result.alignment + "\n";
   for (const AidUse& aid : result.aids)
-    text += fmt::format("{}: {} samples used, {} refused; NIS {:.2f}, expected {:.0f}\n", aid.name, aid.used, aid.refused,
+    text += fmt::format("{}: {} samples used, {} refused; NIS {:.2f}, expected {:.2f}\n", aid.name, aid.used, aid.refused,
                         aid.nis.mean, aid.nis.expected);
   for (const record::Event& event : result.events)
     if (event.kind == "gnss_sigmas_do_not_fit") text += "warning: " + event.text + "\n";

@@ -31,11 +31,18 @@ Standing Judgement::standing() const {
 
 namespace {
 constexpr const char* kJumps = "gnss_jump_m";
+constexpr const char* kRefusedAid = "aid_refused";
+
+bool fails(const Judgement& judgement, std::string_view name) {
+  return std::ranges::any_of(judgement.checks,
+                             [name](const Check& check) { return check.name == name && check.standing() != Standing::kGood; });
+}
 }  // namespace
 
-bool Judgement::only_jumps() const {
-  return std::ranges::all_of(
-      checks, [](const Check& check) { return (check.standing() == Standing::kGood) != (check.name == kJumps); });
+bool Judgement::names_its_cause() const {
+  return standing() != Standing::kGood && std::ranges::all_of(checks, [](const Check& check) {
+           return check.standing() == Standing::kGood || check.name == kJumps || check.name == kRefusedAid;
+         });
 }
 
 std::string Judgement::line() const {
@@ -179,6 +186,21 @@ void add_innovations(const ProcessResult& result, std::vector<Check>& checks) {
                     fmt::format("the NIS is {:.2g} times its expectation under the stated sigmas", ratio)});
 }
 
+void add_refused_aids(const ProcessResult& result, std::vector<Check>& checks) {
+  constexpr double kMost = 0.1;
+  const auto share = [](const AidUse& aid) {
+    return static_cast<double>(aid.refused) / static_cast<double>(std::max<std::size_t>(1, aid.used + aid.refused));
+  };
+  const auto worst = std::ranges::max_element(result.aids, {}, share);
+  if (worst == result.aids.end()) return;
+  checks.push_back({kRefusedAid,
+                    share(*worst),
+                    kMost,
+                    {},
+                    fmt::format("{} of {} samples of the {} contradict the filter and were refused", worst->refused,
+                                worst->used + worst->refused, worst->name)});
+}
+
 void add_noise_fit(const ProcessResult& result, std::vector<Check>& checks) {
   if (!result.noise_fit) return;
   constexpr double kHighest = 999.0;
@@ -229,9 +251,11 @@ void add_lever_arm(const ProcessResult& result, std::vector<Check>& checks) {
 
 // Mistakes in the order in which each hides the later ones.
 std::string likely_cause(const ProcessResult& result, const Judgement& judgement) {
-  if (judgement.only_jumps())
+  if (judgement.names_its_cause() && fails(judgement, kJumps))
     return "from there on another base, height reference or antenna place, or wrongly fixed ambiguities on one side. Find out "
            "which side is right, and process the two apart";
+  if (const record::Event* event = find(result.events, kRefusedAid); event != nullptr && judgement.names_its_cause())
+    return event->text;
   for (const char* kind :
        {"specific_force_unit", "specific_force_size", "gravity_sign", "gravity_axis", "gyro_sign", "gyro_unit",
         "leap_second_shift", "time_shift", "lever_arm_contradicted", "travel_direction", "gnss_sigmas_do_not_fit"})
@@ -253,6 +277,7 @@ std::string told(const std::vector<study::Cause>& causes) {
 Judgement judge(const ProcessResult& result, std::vector<Check> motion) {
   Judgement judgement{std::move(motion)};
   add_innovations(result, judgement.checks);
+  add_refused_aids(result, judgement.checks);
   add_separation(result, judgement.checks);
   add_noise_fit(result, judgement.checks);
   add_jumps(result, judgement.checks);
