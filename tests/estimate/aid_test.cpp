@@ -199,7 +199,8 @@ test::StartSd free_heading() {
   return sd;
 }
 
-/// Ten minutes at rest with a consumer gyro, which drifts by 0.4 deg in that time if nothing holds it.
+/// Ten minutes at rest with a consumer gyro. If nothing holds the heading it drifts by 0.4 deg with the white noise and by 17
+/// deg for each sigma of the bias, which nothing shows at rest.
 struct AtRest {
   noise::ImuErrorModel model = test::error_model(R"(
 schema: coast.imu_error_model/1
