@@ -8,18 +8,11 @@
 #include "coast/record/error.hpp"
 #include "evidence/mission_run.hpp"
 #include "evidence/noise_scan.hpp"
+#include "evidence/selected_effects.hpp"
 
 namespace coast::diagnose {
 
 namespace {
-
-/// Coefficients valid at an instant.
-Eigen::VectorXd coefficients_at(geo::GpsTime t, const std::vector<SelectedEffect>& effects, Eigen::Index size) {
-  Eigen::VectorXd c = Eigen::VectorXd::Zero(size);
-  for (const SelectedEffect& one : effects)
-    if (one.holds(t)) c(one.hypothesis) += one.value;
-  return c;
-}
 
 constexpr double kLevelStep = 0.5;  // s, interval of a mean noise level
 
@@ -37,34 +30,32 @@ const record::NavState& nearest(const std::vector<record::NavState>& path, geo::
   return *behind;
 }
 
-void correct_samples(const std::vector<SelectedEffect>& effects, const Hypotheses& hypotheses,
-                     const std::vector<record::NavState>& path, record::ImuRecording& imu) {
-  Eigen::Matrix3Xd gyro(3, hypotheses.size());
-  Eigen::Matrix3Xd accel(3, hypotheses.size());
-  const record::ImuRecording recorded = imu;
+void correct_samples(const SelectedAlone& selected, const std::vector<record::NavState>& path, record::ImuRecording& imu) {
+  const WithSelected& effects = selected.effects();
+  const Eigen::VectorXd c = selected.coefficients();
+  Eigen::Matrix3Xd gyro(3, effects.size());
+  Eigen::Matrix3Xd accel(3, effects.size());
   for (std::size_t i = 0; i < imu.samples.size(); ++i) {
     record::ImuSample& sample = imu.samples[i];
-    const Eigen::VectorXd c = coefficients_at(sample.t, effects, hypotheses.size());
-    if (c.isZero(0.0)) continue;
+    if (!effects.any_holds(sample.t)) continue;
     gyro.setZero();
     accel.setZero();
-    hypotheses.add_sensor_errors({i, sample.dtheta / sample.dt, sample.dv / sample.dt, nearest(path, sample.t)}, gyro, accel);
+    effects.add_sensor_errors({i, sample.dtheta / sample.dt, sample.dv / sample.dt, nearest(path, sample.t)}, gyro, accel);
     sample.dtheta -= sample.dt * (gyro * c);
     sample.dv -= sample.dt * (accel * c);
   }
 }
 
-void correct_fixes(const std::vector<SelectedEffect>& effects, const Hypotheses& hypotheses,
-                   const std::vector<record::NavState>& path, const estimate::Mission& mission,
+void correct_fixes(const SelectedAlone& selected, const std::vector<record::NavState>& path, const estimate::Mission& mission,
                    const estimate::StateLayout& layout, record::GnssRecording& gnss) {
+  const WithSelected& effects = selected.effects();
+  const Eigen::VectorXd c = selected.coefficients();
   const std::vector<record::ImuSample>& samples = mission.imu.samples;
   const Eigen::Vector3d earth_e(0.0, 0.0, mission.earth_rate);
-  Eigen::MatrixXd D(3, hypotheses.size());
+  Eigen::MatrixXd D(3, effects.size());
   for (record::GnssFix& fix : gnss.fixes) {
     const geo::GpsTime t = fix.t - mission.time_offset_s;
-    if (t < path.front().t || t > path.back().t) continue;
-    const Eigen::VectorXd c = coefficients_at(t, effects, hypotheses.size());
-    if (c.isZero(0.0)) continue;
+    if (t < path.front().t || t > path.back().t || !effects.any_holds(t)) continue;
     const auto sample = std::min(std::ranges::upper_bound(samples, t, {}, &record::ImuSample::t), samples.end() - 1);
     const record::NavState& nav = nearest(path, t);
     const Eigen::Matrix3d C_n_e = geo::C_n_e(geo::geodetic_from_ecef(nav.r_eb_e));
@@ -73,12 +64,12 @@ void correct_fixes(const std::vector<SelectedEffect>& effects, const Hypotheses&
     estimate::MeasurementView view{estimate::UpdateKind::kGnssPosition, static_cast<std::size_t>(sample - samples.begin()), nav,
                                    context};
     D.setZero();
-    hypotheses.add_fix_errors(view, D);
+    effects.add_fix_errors(view, D);
     fix.r_ea_e -= D * c;
     if (!fix.velocity) continue;
     view.kind = estimate::UpdateKind::kGnssVelocity;
     D.setZero();
-    hypotheses.add_fix_errors(view, D);
+    effects.add_fix_errors(view, D);
     fix.velocity->v_ea_n -= C_n_e.transpose() * (D * c);
   }
 }
@@ -108,8 +99,9 @@ MissionInput without(const std::vector<SelectedEffect>& effects, const MissionIn
     h.effect->configure(result.setup, value);
   }
   if (in_recordings.empty() || path.empty()) return result;
-  correct_samples(in_recordings, hypotheses, path, result.imu);
-  correct_fixes(in_recordings, hypotheses, path, mission, layout, result.gnss);
+  const SelectedAlone selected(hypotheses, in_recordings);
+  correct_samples(selected, path, result.imu);
+  correct_fixes(selected, path, mission, layout, result.gnss);
   return result;
 }
 

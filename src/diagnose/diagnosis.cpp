@@ -1,9 +1,13 @@
 #include "coast/diagnose/diagnosis.hpp"
 
 #include <fmt/format.h>
+#include <tbb/global_control.h>
+#include <tbb/parallel_invoke.h>
 
 #include <algorithm>
 #include <functional>
+#include <memory>
+#include <mutex>
 #include <utility>
 
 #include "coast/record/error.hpp"
@@ -115,20 +119,60 @@ void try_all_constant(Searched& best, Context& context) {
   }
 }
 
-/// The likeliest of both orders, if noise was found, and of all exchanges.
-Searched likeliest(const State& start, Context& context) {
-  Searched best{start};
-  search_to_the_end(best, context);
-  if (!context.options.exchanges) return best;
-  if (best.state.account.noise || !best.state.explanation.random.empty()) {
-    Searched other{start};
-    other.state.limits.order = Order::kMeansFirst;
-    search_to_the_end(other, context);
-    keep_likelier(best, std::move(other), context);
+bool found_noise(const State& state) {
+  return state.account.noise || !state.explanation.random.empty();
+}
+
+/// The outcome with mean effects first; none if the filter fails on the way.
+std::optional<Searched> with_means_first(const State& start, Context& context) {
+  Searched searched{start};
+  searched.state.limits.order = Order::kMeansFirst;
+  try {
+    search_to_the_end(searched, context);
+  } catch (const NumericalError&) {
+    return std::nullopt;
   }
+  return searched;
+}
+
+/// The likelier of both orders, if noise was found. Where there are threads for it, they are searched at the same time.
+Searched likelier_order(const State& start, Context& context, Context& other_context) {
+  Searched best{start};
+  std::optional<Searched> other;
+  start.run->complete();  // both begin with it
+  if (tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism) > 1) {
+    tbb::parallel_invoke([&] { search_to_the_end(best, context); }, [&] { other = with_means_first(start, other_context); });
+  } else {
+    search_to_the_end(best, context);
+    if (found_noise(best.state)) other = with_means_first(start, other_context);
+  }
+  if (other && found_noise(best.state)) {
+    context.runs.count(other_context.runs.made());
+    keep_likelier(best, *std::move(other), context);
+  }
+  return best;
+}
+
+/// The likeliest of both orders and of all exchanges.
+Searched likeliest(const State& start, Context& context, Context& other_context) {
+  if (!context.options.exchanges) {
+    Searched only{start};
+    search_to_the_end(only, context);
+    return only;
+  }
+  Searched best = likelier_order(start, context, other_context);
   try_all_lasting(best, context);
   try_all_constant(best, context);
   return best;
+}
+
+/// Stages of runs that are made side by side are told one at a time.
+study::Progress one_at_a_time(const study::Progress& progress) {
+  if (!progress) return {};
+  return [&progress, telling = std::make_shared<std::mutex>()](const char* what, double fraction) {
+    const std::lock_guard lock(*telling);
+    progress(what, fraction);
+  };
 }
 
 bool has_found_anything(const State& state, const Context& context) {
@@ -139,17 +183,20 @@ bool has_found_anything(const State& state, const Context& context) {
 
 }  // namespace
 
-Diagnosis diagnose(const MissionInput& input, const DiagnosisOptions& options, const study::Progress& progress,
+Diagnosis diagnose(const MissionInput& input, const DiagnosisOptions& options, const study::Progress& to_tell,
                    const std::vector<MissionInput>& simulations) {
+  const study::Progress progress = one_at_a_time(to_tell);
   Runs runs(with_open_gate(input), grade_of(input.setup.model), progress);
+  Runs runs_of_other_order(with_open_gate(input), grade_of(input.setup.model), progress);
   Context context{options, input.setup.noise_fit, runs};
+  Context other_context{options, input.setup.noise_fit, runs_of_other_order};
   State start = begin(context);
   const Baseline baseline{start.run->mission().fit(), start.run->mission().solution().forward.innovations};
   start = with_draws(with_mended_samples(std::move(start), context), context);
   std::vector<TwinStatistic> before, after;
   if (options.twins > 0 || !simulations.empty())
     before = compared("running twins of the stated model", start, context, simulations);
-  const Searched best = likeliest(start, context);
+  const Searched best = likeliest(start, context, other_context);
   if (options.twins > 0 && has_found_anything(best.state, context))
     after = compared("running twins of the diagnosed model", best.state, context, {});
   Diagnosis result = diagnosis_of(best.state, context, baseline);

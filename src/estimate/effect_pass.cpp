@@ -1,6 +1,9 @@
 #include "coast/estimate/effect_pass.hpp"
 
+#include <tbb/parallel_pipeline.h>
+
 #include <Eigen/Cholesky>
+#include <utility>
 
 #include "backward_recursion.hpp"
 #include "coast/geo/earth.hpp"
@@ -164,31 +167,88 @@ AppliedUpdate silent(AppliedUpdate update) {
 
 }  // namespace
 
-void effect_pass(const Mission& mission, const StateLayout& layout, const KnotStore& knots, const Effects& effects,
-                 const EffectPassOptions& options, const std::function<void(const Evidence&)>& visit) {
-  DrivenColumns driven(mission, layout, effects);
-  EffectRecursion recursion(layout, effects.size(), options);
-  Eigen::MatrixXd D;
-  Navigator navigator(layout, mission.increments, mission.earth_rate);
-  for (std::size_t k = knots.size(); k-- > 0;) {
-    const Knot knot = knots.at(k);
-    if (k + 1 < knots.size()) {
-      driven.over(knot, knots.time(k + 1));
-      recursion.through_transition(knot, driven.W());
+namespace {
+
+/// All that the recursion needs of a knot.
+struct PreparedKnot {
+  Knot knot;
+  NavRows W;                       ///< over the interval to the next knot; none behind the last one
+  std::vector<Eigen::MatrixXd> D;  ///< by update
+};
+
+/// Prepares knots, which do not depend on each other.
+class Preparation {
+ public:
+  Preparation(const Mission& mission, const StateLayout& layout, const KnotStore& knots, const Effects& effects)
+      : mission_(mission),
+        layout_(layout),
+        knots_(knots),
+        effects_(effects),
+        driven_(mission, layout, effects),
+        navigator_(layout, mission.increments, mission.earth_rate) {}
+
+  [[nodiscard]] PreparedKnot of(std::size_t k) {
+    PreparedKnot prepared{.knot = knots_.at(k), .W = {}, .D = {}};
+    const Knot& knot = prepared.knot;
+    if (k + 1 < knots_.size()) {
+      driven_.over(knot, knots_.time(k + 1));
+      prepared.W = driven_.W();
     }
-    navigator.set(knot.post);
+    navigator_.set(knot.post);
     const SampleCursor cursor{knot.next_sample, knot.remainder};
     const Eigen::Matrix3d C_n_e = geo::C_n_e(geo::geodetic_from_ecef(knot.post.nav.r_eb_e));
-    const UpdateContext context = update_context(mission, layout, cursor, navigator, C_n_e);
-    const bool counted = !options.counts || options.counts(knot.post.nav.t);
-    for (auto update = knot.updates.rbegin(); update != knot.updates.rend(); ++update) {
-      D.setZero(update->y.size(), effects.size());
-      effects.add_measurement_errors({update->kind, knot.next_sample, knot.post.nav, context}, D);
-      recursion.through_update(knot.post.nav.t, counted ? *update : silent(*update), D);
+    const UpdateContext context = update_context(mission_, layout_, cursor, navigator_, C_n_e);
+    for (const AppliedUpdate& update : knot.updates) {
+      prepared.D.emplace_back(Eigen::MatrixXd::Zero(update.y.size(), effects_.size()));
+      effects_.add_measurement_errors({update.kind, knot.next_sample, knot.post.nav, context}, prepared.D.back());
     }
-    visit(recursion.at(knot.post.nav.t));
-    if (options.progress && k % 256 == 0) options.progress(1.0 - static_cast<double>(k) / static_cast<double>(knots.size()));
+    return prepared;
   }
+
+ private:
+  const Mission& mission_;
+  const StateLayout& layout_;
+  const KnotStore& knots_;
+  const Effects& effects_;
+  DrivenColumns driven_;
+  Navigator navigator_;
+};
+
+}  // namespace
+
+// Knots are prepared by all threads, some at a time; the recursion takes them in order.
+void effect_pass(const Mission& mission, const StateLayout& layout, const KnotStore& knots, const Effects& effects,
+                 const EffectPassOptions& options, const std::function<void(const Evidence&)>& visit) {
+  constexpr std::size_t kAtATime = 64;
+  constexpr std::size_t kTokens = 8;
+  EffectRecursion recursion(layout, effects.size(), options);
+  std::size_t left = knots.size();
+  const auto next = [&](tbb::flow_control& control) {
+    if (left == 0) control.stop();
+    return std::exchange(left, left - std::min(left, kAtATime));
+  };
+  const auto prepare = [&](std::size_t end) {
+    Preparation preparation(mission, layout, knots, effects);
+    std::vector<PreparedKnot> prepared;  // the last one first
+    for (std::size_t k = end; k-- > end - std::min(end, kAtATime);) prepared.push_back(preparation.of(k));
+    return std::pair(end, std::move(prepared));
+  };
+  const auto recur = [&](const std::pair<std::size_t, std::vector<PreparedKnot>>& chunk) {
+    for (const PreparedKnot& one : chunk.second) {
+      const geo::GpsTime t = one.knot.post.nav.t;
+      if (one.W.cols() > 0) recursion.through_transition(one.knot, one.W);
+      const bool counted = !options.counts || options.counts(t);
+      for (std::size_t u = one.D.size(); u-- > 0;)
+        recursion.through_update(t, counted ? one.knot.updates[u] : silent(one.knot.updates[u]), one.D[u]);
+      visit(recursion.at(t));
+    }
+    if (options.progress) options.progress(1.0 - static_cast<double>(chunk.first) / static_cast<double>(knots.size()));
+  };
+  tbb::parallel_pipeline(kTokens, tbb::make_filter<void, std::size_t>(tbb::filter_mode::serial_in_order, next) &
+                                      tbb::make_filter<std::size_t, std::pair<std::size_t, std::vector<PreparedKnot>>>(
+                                          tbb::filter_mode::parallel, prepare) &
+                                      tbb::make_filter<std::pair<std::size_t, std::vector<PreparedKnot>>, void>(
+                                          tbb::filter_mode::serial_in_order, recur));
 }
 
 }  // namespace coast::estimate

@@ -140,18 +140,21 @@ NoiseFit fit_noise(const Mission& mission, const noise::ImuErrorModel& model, co
   record::GnssRecording clean = mission.gnss;
   const Mission cleaned = with_fixes(mission, clean);
   NoiseObjective objective(cleaned, model, options, parameters, from, start);
-  const Likelihood likelihood{[&](const Eigen::VectorXd& theta) {
-                                // Their number is unknown beforehand.
-                                if (progress) progress(1.0 - 1.0 / (1.0 + 0.05 * objective.passes()));
-                                return objective.value(theta);
-                              },
-                              [&] { return objective.scores(); }};
+  const Likelihood likelihood{
+      [&](const Eigen::VectorXd& theta) {
+        // Their number is unknown beforehand.
+        if (progress) progress(1.0 - 1.0 / (1.0 + 0.05 * objective.passes()));
+        return objective.value(theta);
+      },
+      [&] { return objective.scores(); }, [&](const Eigen::VectorXd& theta) { return objective.value_beside(theta); },
+      [&](const Eigen::VectorXd& theta, double& value) { return objective.scores_beside(theta, value); }};
   SearchState search{point_at(likelihood, logarithms(from, parameters, box)), {}};
   if (!std::isfinite(search.at.value)) static_cast<void>(objective.run(objective.at(search.at.theta)));  // throws the cause
   climb(likelihood, box, kNearby, search);
   NoiseFit fit;
-  if (choice.to_the_optimum) {
-    relinearise(likelihood, false, search);
+  if (choice.precision != FitPrecision::kPreliminary) {
+    const bool is_last = choice.precision == FitPrecision::kSearch;
+    relinearise(likelihood, is_last, search);
     climb(likelihood, box, kSettled, search);
     const NoiseAdjustment fitted = objective.at(search.at.theta);
     const ForwardFilter filter(cleaned, adjusted(model, fitted), adjusted(options, fitted));
@@ -160,7 +163,7 @@ NoiseFit fit_noise(const Mission& mission, const noise::ImuErrorModel& model, co
       search.at = point_at(likelihood, search.at.theta);
       climb(likelihood, box, kSettled, search);
     }
-    polish(likelihood, box, search);
+    if (!is_last) polish(likelihood, box, search);
     describe(objective, parameters, {options.gnss_scale, options.auxiliary.correlated_gnss}, search.at, fit);
   }
   for (const NoiseParameter& p : parameters) fit.names.emplace_back(p.name);

@@ -37,6 +37,23 @@ NoiseScores NoiseObjective::scores() const {
   return noise_scores(pass_, model);
 }
 
+NoiseScores NoiseObjective::scores_beside(const Eigen::VectorXd& theta, double& value) const {
+  NoiseObjective other(mission_, model_, options_, parameters_, fixed_, start_);
+  value = other.value(theta);
+  ++passes_;
+  if (std::isfinite(value)) return other.scores();
+  const auto n = theta.size();
+  return {Eigen::VectorXd::Zero(n), Eigen::MatrixXd::Zero(n, n)};
+}
+
+double NoiseObjective::value_beside(const Eigen::VectorXd& theta) const {
+  try {
+    return run(at(theta)).log_likelihood;
+  } catch (const NumericalError&) {
+    return -std::numeric_limits<double>::infinity();
+  }
+}
+
 FilterResult NoiseObjective::run(const NoiseAdjustment& adjustment) const {
   ++passes_;
   const ForwardFilter filter = filter_at(adjustment);

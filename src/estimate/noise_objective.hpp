@@ -24,6 +24,9 @@ class NoiseObjective {
   [[nodiscard]] double value(const Eigen::VectorXd& theta);
   /// At the point of the last call of value().
   [[nodiscard]] NoiseScores scores() const;
+  /// Value, and scores if it is finite, by a pass that is not kept; from several threads at a time.
+  [[nodiscard]] NoiseScores scores_beside(const Eigen::VectorXd& theta, double& value) const;
+  [[nodiscard]] double value_beside(const Eigen::VectorXd& theta) const;
   /// An additional pass that is not kept. @throws NumericalError  the filter fails
   [[nodiscard]] FilterResult run(const NoiseAdjustment& adjustment) const;
   [[nodiscard]] int passes() const { return passes_; }

@@ -1,5 +1,7 @@
 #include "noise_search.hpp"
 
+#include <tbb/parallel_for.h>
+
 #include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
@@ -106,18 +108,22 @@ void climb(const Likelihood& likelihood, const SearchBox& box, double settled, S
   constexpr double kFar = 1000.0;    // of the log-likelihood
   constexpr double kNear = 0.5;      // beyond it a secant gives no information on the curvature at its end
   constexpr double kNothing = 1e-3;  // of the log-likelihood: allowed loss of a step because of slope errors
+  constexpr double kKept = 0.1;      // of a small promised gain, below which it is such an error
   SearchPoint& at = state.at;
   std::deque<Secant> secants;
   for (int i = 0; i < kMostSteps; ++i) {
     const Eigen::VectorXd low = (box.low - at.theta).cwiseMax(-kFarthest);
     const Eigen::VectorXd high = (box.high - at.theta).cwiseMin(kFarthest);
     const Eigen::VectorXd before = at.theta, slopes = state.slopes();
+    const double value_before = at.value;
     const Eigen::VectorXd step = best_step(slopes, at.information, low, high);
     const double gain = promised(slopes, at.information, step);
     if (gain < settled) return;
     const bool taken = (gain > kFar && take(likelihood, lengthened(step, high), at.value, at)) ||
                        take_some(likelihood, step, at.value - kNothing, at);
     if (!taken) return;
+    // Scores leave out what the linearisation point changes: near the optimum they point beside it, step after step.
+    if (!state.beyond_scores && gain < kNear && at.value - value_before < kKept * gain) return;
     secants.push_back({at.theta - before, slopes - state.slopes()});
     if (secants.back().step.lpNorm<Eigen::Infinity>() > kNear) secants.clear();
     if (secants.size() > static_cast<std::size_t>(slopes.size())) secants.pop_front();
@@ -135,10 +141,12 @@ Eigen::VectorXd slopes_with_curvature(const Likelihood& likelihood, SearchPoint&
   const Eigen::VectorXd steps = kShare * sigmas_of_each(at.information);
   Eigen::MatrixXd information(n, n);
   Eigen::VectorXd slopes(n);
-  for (Index i = 0; i < n; ++i) {
-    slopes(i) = (likelihood.value(at.theta + steps(i) * Eigen::VectorXd::Unit(n, i)) - at.value) / steps(i);
-    information.col(i) = (at.scores.gradient - likelihood.scores().gradient) / steps(i);
-  }
+  tbb::parallel_for(Index{0}, n, [&](Index i) {
+    double value = 0.0;
+    const NoiseScores there = likelihood.scores_beside(at.theta + steps(i) * Eigen::VectorXd::Unit(n, i), value);
+    slopes(i) = (value - at.value) / steps(i);
+    information.col(i) = (at.scores.gradient - there.gradient) / steps(i);
+  });
   slopes += 0.5 * steps.cwiseProduct(information.diagonal());
   information = (0.5 * (information + information.transpose())).eval();
   if (information.llt().info() == Eigen::Success) at.information = information;  // else the average one, which is no saddle
@@ -151,10 +159,10 @@ Eigen::VectorXd slopes_by_values(const Likelihood& likelihood, const SearchPoint
   const Index n = at.theta.size();
   const Eigen::VectorXd steps = kShare * sigmas_of_each(at.information);
   Eigen::VectorXd slopes(n);
-  for (Index i = 0; i < n; ++i) {
+  tbb::parallel_for(Index{0}, n, [&](Index i) {
     const Eigen::VectorXd step = steps(i) * Eigen::VectorXd::Unit(n, i);
-    slopes(i) = (likelihood.value(at.theta + step) - likelihood.value(at.theta - step)) / (2.0 * steps(i));
-  }
+    slopes(i) = (likelihood.value_beside(at.theta + step) - likelihood.value_beside(at.theta - step)) / (2.0 * steps(i));
+  });
   return slopes;
 }
 

@@ -151,7 +151,7 @@ void PreparedMission::fit_and_adopt(const Progress& progress) {
     setup_.model = with_drift_scaled(stated_model, imu_.rate_hz, drift_);
     setup_.filter = stated;
     estimate::NoiseFitChoice choice = *setup_.noise_fit;
-    choice.to_the_optimum = last;
+    choice.precision = last ? estimate::FitPrecision::kOptimum : estimate::FitPrecision::kPreliminary;
     noise_fit_ = fit(choice, from, last ? longest : std::min(kFirstMinutes, longest), progress);
     adopt(*noise_fit_);
     // A correlated error estimated as zero starts with a small value again: at zero its gradient vanishes.

@@ -46,7 +46,6 @@ struct ExaminationOptions {
   Eigen::Index draws = 400;
   Eigen::Index draws_of_disturbances = 200;  ///< number of draws that are stored interval by interval
   std::uint64_t seed = 1;
-  std::function<bool(geo::GpsTime)> counts = {};  ///< innovations at other instants are not used; empty: all are
   std::vector<Examination::Started> started = {};
 };
 

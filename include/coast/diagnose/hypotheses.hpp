@@ -1,6 +1,7 @@
 #pragma once
 // The catalogue applied to one recording: every observable coefficient, and the effect per unit of each on the samples.
 
+#include <memory>
 #include <vector>
 
 #include "coast/diagnose/effect.hpp"
@@ -53,6 +54,8 @@ class Hypotheses : public estimate::Effects {
   /// @param suggested  appended to the catalogue; must outlive the set
   Hypotheses(const estimate::Mission& mission, const estimate::FilterOptions& filter, Grade grade,
              const std::vector<record::NavState>& path, const std::vector<EffectPtr>& suggested);
+  /// Of others only those effects, with all their axes, that have at least one of some coefficients.
+  Hypotheses(const Hypotheses& all, const std::vector<Eigen::Index>& kept);
 
   [[nodiscard]] Eigen::Index size() const override { return static_cast<Eigen::Index>(all_.size()); }
   [[nodiscard]] const std::vector<Hypothesis>& all() const { return all_; }
@@ -76,6 +79,7 @@ class Hypotheses : public estimate::Effects {
     Eigen::Index first;  ///< of its columns
     Eigen::Index count;
   };
+  void add(const Effect& effect, double plausible);
   [[nodiscard]] record::NavState smoothed(const record::NavState& filtered) const;
   void add_slip(const estimate::MeasurementView& measurement, Eigen::MatrixXd& D) const;
   /// Errors of the measured rate, which enter the filter's prediction for a point away from the IMU, body axes.
@@ -84,7 +88,7 @@ class Hypotheses : public estimate::Effects {
   const estimate::Mission& mission_;
   const estimate::FilterOptions& filter_;
   const std::vector<record::NavState>& path_;
-  SignalTable signals_;
+  std::shared_ptr<const SignalTable> signals_;
   std::vector<Hypothesis> all_;
   std::vector<Part> parts_;
 };

@@ -17,12 +17,19 @@ struct NoiseAdjustment {
   double accel_factor = 1.0;  ///< on the accelerometer's
 };
 
+/// How far a fit goes. Its cost in passes, with n parameters: about 8, 20 + 2 n, 40 + 6 n.
+enum class FitPrecision {
+  kPreliminary,  ///< to a tenth of a sigma, without log_sd and a second round
+  kSearch,       ///< to a hundredth of a sigma or so: steps of a search that compares likelihoods of whole runs
+  kOptimum,      ///< to a thousandth of a sigma
+};
+
 /// Which parts are free.
 struct NoiseFitChoice {
   bool gnss_scale = true;
   bool correlated_gnss = true;
   bool imu_white_noise = false;
-  bool to_the_optimum = true;  ///< false: preliminary, to a tenth of a sigma, without log_sd and a second round
+  FitPrecision precision = FitPrecision::kOptimum;
 };
 
 /// Whether a parameter ended on one of its bounds. On the lower bound of an amplitude, or of a factor on GNSS sigmas combined

@@ -5,6 +5,7 @@
 
 #include "coast/simulate/random.hpp"
 #include "evidence/observable.hpp"
+#include "evidence/selected_effects.hpp"
 
 namespace coast::diagnose {
 
@@ -90,35 +91,6 @@ class Recorder {
   geo::GpsTime earliest_;  ///< of an onset: earlier effects act from the start on
 };
 
-/// The hypotheses, followed by some of them with a later onset.
-class WithStarted : public estimate::Effects {
- public:
-  WithStarted(const Hypotheses& hypotheses, const std::vector<Examination::Started>& started)
-      : hypotheses_(hypotheses), started_(started) {}
-  [[nodiscard]] Eigen::Index size() const override { return hypotheses_.size() + static_cast<Eigen::Index>(started_.size()); }
-  void add_sensor_errors(const estimate::SampleView& sample, Eigen::Matrix3Xd& gyro_b,
-                         Eigen::Matrix3Xd& accel_b) const override {
-    hypotheses_.add_sensor_errors(sample, gyro_b, accel_b);
-    for_each_at(sample.nav.t, [&](Eigen::Index to, Eigen::Index of) {
-      gyro_b.col(to) = gyro_b.col(of);
-      accel_b.col(to) = accel_b.col(of);
-    });
-  }
-  void add_measurement_errors(const estimate::MeasurementView& measurement, Eigen::MatrixXd& D) const override {
-    hypotheses_.add_measurement_errors(measurement, D);
-    for_each_at(measurement.nav.t, [&](Eigen::Index to, Eigen::Index of) { D.col(to) = D.col(of); });
-  }
-
- private:
-  template <typename Take>
-  void for_each_at(geo::GpsTime t, const Take& take) const {
-    for (std::size_t k = 0; k < started_.size(); ++k)
-      if (t >= started_[k].from) take(hypotheses_.size() + static_cast<Eigen::Index>(k), started_[k].hypothesis);
-  }
-  const Hypotheses& hypotheses_;
-  const std::vector<Examination::Started>& started_;
-};
-
 }  // namespace
 
 Examination examine(const estimate::Mission& mission, const estimate::StateLayout& layout, const estimate::KnotStore& knots,
@@ -126,12 +98,13 @@ Examination examine(const estimate::Mission& mission, const estimate::StateLayou
                     const std::function<void(double)>& progress) {
   Examination result;
   result.started = options.started;
-  const WithStarted effects(hypotheses, result.started);
+  std::vector<SelectedEffect> started;
+  for (const Examination::Started& one : options.started) started.push_back({.hypothesis = one.hypothesis, .from = one.from});
+  const WithSelected effects(hypotheses, std::move(started));
   Recorder recorder(hypotheses, options, knots, result);
   simulate::Normal normal(simulate::stream_seed(options.seed, {1}));
   estimate::EffectPassOptions pass;
   pass.draws = options.draws;
-  pass.counts = options.counts;
   pass.draw = [&normal](geo::GpsTime, const Eigen::VectorXd&, Eigen::Ref<Eigen::MatrixXd> values) {
     for (double& value : values.reshaped()) value = normal();
   };

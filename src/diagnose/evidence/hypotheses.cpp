@@ -11,16 +11,28 @@ namespace coast::diagnose {
 
 Hypotheses::Hypotheses(const estimate::Mission& mission, const estimate::FilterOptions& filter, Grade grade,
                        const std::vector<record::NavState>& path, const std::vector<EffectPtr>& suggested)
-    : mission_(mission), filter_(filter), path_(path), signals_(mission.imu, mission.C_s_b) {
-  const auto add = [&](const Effect& effect) {
-    if (why_not_seen(effect) != nullptr) return;
-    const auto axes = static_cast<Eigen::Index>(effect.axes.size());
-    parts_.push_back({&effect, size(), axes});
-    for (Eigen::Index axis = 0; axis < axes; ++axis)
-      all_.push_back({&effect, axis, effect.plausible[static_cast<std::size_t>(grade)]});
-  };
-  for (const Effect& effect : catalogue()) add(effect);
-  for (const EffectPtr& effect : suggested) add(*effect);
+    : mission_(mission),
+      filter_(filter),
+      path_(path),
+      signals_(std::make_shared<const SignalTable>(mission.imu, mission.C_s_b)) {
+  for (const Effect& effect : catalogue())
+    if (why_not_seen(effect) == nullptr) add(effect, effect.plausible[static_cast<std::size_t>(grade)]);
+  for (const EffectPtr& effect : suggested)
+    if (why_not_seen(*effect) == nullptr) add(*effect, effect->plausible[static_cast<std::size_t>(grade)]);
+}
+
+Hypotheses::Hypotheses(const Hypotheses& all, const std::vector<Eigen::Index>& kept)
+    : mission_(all.mission_), filter_(all.filter_), path_(all.path_), signals_(all.signals_) {
+  for (const Part& part : all.parts_) {
+    const auto is_of_it = [&](Eigen::Index i) { return i >= part.first && i < part.first + part.count; };
+    if (std::ranges::any_of(kept, is_of_it)) add(*part.effect, all[part.first].plausible);
+  }
+}
+
+void Hypotheses::add(const Effect& effect, double plausible) {
+  const auto axes = static_cast<Eigen::Index>(effect.axes.size());
+  parts_.push_back({&effect, size(), axes});
+  for (Eigen::Index axis = 0; axis < axes; ++axis) all_.push_back({&effect, axis, plausible});
 }
 
 Eigen::Index Hypotheses::bias_step(Site site, Eigen::Index axis) const {
@@ -31,14 +43,14 @@ Eigen::Index Hypotheses::bias_step(Site site, Eigen::Index axis) const {
 
 const char* Hypotheses::why_not_seen(const Effect& effect) const {
   if (effect.needs_reference) return "no innovation changes: only a reference could show it";
-  if (effect.needs_temperature && !signals_.has_temperature()) return "no temperature was recorded";
+  if (effect.needs_temperature && !signals_->has_temperature()) return "no temperature was recorded";
   if (effect.slip && !filter_.vehicle.non_holonomic) return "the run is not told that the vehicle neither slides nor lifts";
   if (effect.slip && filter_.auxiliary.mounting_sd > 0.0) return "the run estimates it itself";
   return nullptr;
 }
 
 Signals Hypotheses::signals(const estimate::SampleView& sample) const {
-  return signals_.at(std::min(sample.index, mission_.imu.samples.size() - 1), sample.omega_b, sample.f_b, sample.nav);
+  return signals_->at(std::min(sample.index, mission_.imu.samples.size() - 1), sample.omega_b, sample.f_b, sample.nav);
 }
 
 void Hypotheses::add_sensor_errors(const estimate::SampleView& sample, Eigen::Matrix3Xd& gyro_b,
@@ -83,7 +95,7 @@ Eigen::Matrix3Xd Hypotheses::rate_errors(const estimate::MeasurementView& m, Eig
   Eigen::Matrix3Xd gyro_b = Eigen::Matrix3Xd::Zero(3, columns);
   Eigen::Matrix3Xd accel_b = gyro_b;
   const Eigen::Vector3d earth_b = m.nav.q_b_e.conjugate() * Eigen::Vector3d(0.0, 0.0, mission_.earth_rate);
-  add_sensor_errors({m.sample, m.context.omega_eb_b + earth_b, signals_.means_about(m.sample).f_b, m.nav}, gyro_b, accel_b);
+  add_sensor_errors({m.sample, m.context.omega_eb_b + earth_b, signals_->means_about(m.sample).f_b, m.nav}, gyro_b, accel_b);
   return gyro_b;
 }
 
@@ -93,7 +105,7 @@ void Hypotheses::add_fix_errors(const estimate::MeasurementView& m, Eigen::Matri
   s.C_b_e = nav.q_b_e.toRotationMatrix();
   s.C_n_e = m.context.C_n_e;
   s.omega_b = m.context.omega_eb_b;
-  const SignalTable::Means means = signals_.means_about(m.sample);
+  const SignalTable::Means means = signals_->means_about(m.sample);
   const Eigen::Vector3d earth(0.0, 0.0, mission_.earth_rate);
   s.v_ea_e = nav.v_eb_e + (s.C_b_e * means.omega_b - earth).cross(s.C_b_e * m.context.lever_arm_b);
   s.a_ea_e = s.C_b_e * means.f_b + geo::gravity_e(nav.r_eb_e) - 2.0 * earth.cross(nav.v_eb_e);

@@ -103,7 +103,8 @@ double contradiction(const std::vector<estimate::InnovationRecord>& innovations)
 
 std::optional<FittedNoise> fitted_noise(const study::PreparedMission& mission, const std::optional<estimate::NoiseFit>& before,
                                         const study::Progress& progress) {
-  constexpr estimate::NoiseFitChoice kAll{.gnss_scale = true, .correlated_gnss = true, .imu_white_noise = true};
+  constexpr estimate::NoiseFitChoice kAll{
+      .gnss_scale = true, .correlated_gnss = true, .imu_white_noise = true, .precision = estimate::FitPrecision::kSearch};
   FittedNoise fitted{
       mission.fit(kAll, before ? before->adjustment : estimate::starting_point(mission.options(), kAll), kLongestFit, progress),
       {}};

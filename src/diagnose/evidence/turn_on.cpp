@@ -30,10 +30,6 @@ double bias_of(const TurnOn& one, const estimate::StateLayout& layout, const Eig
   return sum;
 }
 
-double prior_mean(const TurnOn& one, const MissionRun& run) {
-  return bias_of(one, run.layout(), run.prepared().start_state(*run.solution().filter).x);
-}
-
 /// Sum and sum of squares of a unit of each effect on an axis.
 struct Moments {
   Eigen::ArrayXd sum, squares;
@@ -102,9 +98,12 @@ double gain_about_stated(const TurnOn& one, const MissionRun& run) {
 }
 
 // Innovations about a mean smaller by m are larger by D_b m, with D_b those of a constant bias.
-void move_to_stated(const TurnOn& one, const MissionRun& run, Examination& examination) {
-  examination.score +=
-      prior_mean(one, run) * examination.information.col(run.hypotheses().bias_step(sensor_site(one.sensor), one.axis));
+double prior_mean(const TurnOn& one, const MissionRun& run) {
+  return bias_of(one, run.layout(), run.prepared().start_state(*run.solution().filter).x);
+}
+
+Eigen::Index constant_bias(const TurnOn& one, const MissionRun& run) {
+  return run.hypotheses().bias_step(sensor_site(one.sensor), one.axis);
 }
 
 NoiseFinding described_bias(const TurnOn& one) {

@@ -29,10 +29,11 @@ struct TurnOn {
 /// Biases that occur in less than one in ten thousand missions if the error model is correct.
 [[nodiscard]] std::vector<TurnOn> beyond_stated(const MissionRun& run);
 /// A run uses the estimated bias as its prior mean. Gain in log-likelihood if this mean is that of the error model instead, and
-/// scores likewise: the bias and an effect that is constant during the mission share the estimate, and a mean equal to the
-/// estimate would suit every share.
+/// what scores change by for each unit of information on the bias: the bias and an effect that is constant during the mission
+/// share the estimate, and a mean equal to the estimate would suit every share.
 [[nodiscard]] double gain_about_stated(const TurnOn& one, const MissionRun& run);
-void move_to_stated(const TurnOn& one, const MissionRun& run, Examination& examination);
+[[nodiscard]] double prior_mean(const TurnOn& one, const MissionRun& run);
+[[nodiscard]] Eigen::Index constant_bias(const TurnOn& one, const MissionRun& run);  ///< its hypothesis
 
 [[nodiscard]] NoiseFinding described_bias(const TurnOn& one);
 /// Sets a turn-on bias of this size in the error model.

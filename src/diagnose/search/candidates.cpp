@@ -1,7 +1,10 @@
 #include "search/candidates.hpp"
 
+#include <tbb/parallel_for.h>
+
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <utility>
 
 #include "search/movement.hpp"
@@ -59,31 +62,45 @@ bool Candidates::evidence_is_exceeded_by(double evidence) {
   return evidence > evidence_;
 }
 
+// Each is run with its estimate and with the next one: scores are linear about zero, and for a large effect wrong by tens of
+// percent.
 void Candidates::run_all() {
+  std::vector<Candidate*> pending;
+  std::vector<Runs::Request> requests;
   for (Candidate& c : all_) {
-    if (!c.by_runs) run(c);
+    if (c.by_runs) continue;
+    const Suspicion& s = c.suspicion;
+    pending.push_back(&c);
+    requests.push_back({state_->explanation.with({s.hypothesis, s.from, {}, s.estimate}), state_->run});
+  }
+  if (pending.empty()) return;
+  const std::vector<RunPtr> first = context_->runs.try_all(requests);
+  std::vector<std::optional<Movement>> steps(first.size());
+  tbb::parallel_for(std::size_t{0}, first.size(), [&](std::size_t i) {
+    if (first[i]) steps[i] = movement(first[i]->sizes());
+  });
+  std::vector<Runs::Request> next;
+  for (std::size_t i = 0; i < first.size(); ++i)
+    if (first[i]) next.push_back({moved(first[i]->explanation(), *steps[i]), first[i]});
+  const std::vector<RunPtr> second = context_->runs.try_all(next);
+  for (std::size_t i = 0, k = 0; i < pending.size(); ++i) {
+    pending[i]->by_runs = -std::numeric_limits<double>::infinity();
+    if (first[i]) note_runs(*pending[i], *first[i], *steps[i], second[k++].get());
+  }
+  for (const Candidate& c : all_) {
     gain_ = std::max(gain_, *c.by_runs);
     evidence_ = std::max(evidence_, c.log_bayes() - log_choices(*state_));
   }
 }
 
-// The better of its first estimate and the next: scores are linear about zero, and for a large effect wrong by tens of
-// percent.
-void Candidates::run(Candidate& candidate) {
-  const Suspicion& s = candidate.suspicion;
-  const std::size_t selected = state_->explanation.effects.size();
-  double best = -std::numeric_limits<double>::infinity();
-  if (const RunPtr first =
-          context_->runs.try_about(state_->explanation.with({s.hypothesis, s.from, {}, s.estimate}), state_->run)) {
-    best = first->log_likelihood();
-    const Movement step = movement(first->scores(), first->explanation().effects);
-    const Explanation next = moved(first->explanation(), step);
-    for (std::size_t i = 0; i < selected; ++i)
-      if (std::abs(next.effects[i].value) < kInsignificant * step.sd(static_cast<Eigen::Index>(i)) &&
-          !is_of_a_line(state_->account.findings[i]))
-        candidate.freed += state_->account.findings[i].price + log_choices(*state_);
-    if (const RunPtr second = context_->runs.try_about(next, first)) best = std::max(best, second->log_likelihood());
-  }
+void Candidates::note_runs(Candidate& candidate, const ExplainedRun& first, const Movement& step, const ExplainedRun* second) {
+  const Explanation next = moved(first.explanation(), step);
+  for (std::size_t i = 0; i < state_->explanation.effects.size(); ++i)
+    if (std::abs(next.effects[i].value) < kInsignificant * step.sd(static_cast<Eigen::Index>(i)) &&
+        !is_of_a_line(state_->account.findings[i]))
+      candidate.freed += state_->account.findings[i].price + log_choices(*state_);
+  double best = first.log_likelihood();
+  if (second != nullptr) best = std::max(best, second->log_likelihood());
   candidate.by_runs = best - state_->run->log_likelihood();
 }
 

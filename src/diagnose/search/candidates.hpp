@@ -5,6 +5,7 @@
 #include <optional>
 #include <vector>
 
+#include "search/movement.hpp"
 #include "search/state.hpp"
 
 namespace coast::diagnose {
@@ -43,7 +44,8 @@ class Candidates {
   void find();
   void bound();
   void run_all();
-  void run(Candidate& candidate);
+  /// @param second  null: the filter fails
+  void note_runs(Candidate& candidate, const ExplainedRun& first, const Movement& step, const ExplainedRun* second);
 
   const State* state_ = nullptr;
   Context* context_ = nullptr;

@@ -1,5 +1,7 @@
 #include "search/explained_run.hpp"
 
+#include <tbb/parallel_for.h>
+
 #include <algorithm>
 #include <utility>
 
@@ -34,6 +36,10 @@ void forget_standstill(const TurnOn& bias, study::Setup& setup) {
   const Eigen::Vector3d axis_b = setup.C_s_b.col(bias.axis);
   setup.start->gyro_bias -= axis_b * axis_b.dot(setup.start->gyro_bias);
   setup.start->gyro_bias_sd.reset();
+}
+
+std::size_t key_of(const Explanation& explanation, const ExplainedRun& other) {
+  return combined(other.key(), explanation.hash());
 }
 
 }  // namespace
@@ -75,8 +81,33 @@ Examination ExplainedRun::examined(ExaminationOptions options) const {
       examine(run_.mission(), run_.layout(), run_.solution().knots, run_.hypotheses(), options, [this](double done) {
         if (progress_) progress_("examining effects", done);
       });
-  for (const TurnOn& bias : explanation_.shared) move_to_stated(bias, run_, examination);
+  for (const TurnOn& bias : explanation_.shared)
+    examination.score += prior_mean(bias, run_) * examination.information.col(constant_bias(bias, run_));
   return examination;
+}
+
+const SizeEvidence& ExplainedRun::sizes() const {
+  if (!sizes_) sizes_ = sizes_where({});
+  return *sizes_;
+}
+
+void ExplainedRun::complete() const {
+  static_cast<void>(scores());
+  static_cast<void>(sizes());
+}
+
+SizeEvidence ExplainedRun::sizes_where(const std::function<bool(geo::GpsTime)>& counts) const {
+  if (explanation_.effects.empty()) return {};
+  std::vector<SelectedEffect> selected = explanation_.effects;
+  for (const TurnOn& bias : explanation_.shared) selected.push_back({.hypothesis = constant_bias(bias, run_)});
+  const SizeEvidence all = evidence_of_sizes(run_.mission(), run_.layout(), run_.solution().knots,
+                                             SelectedAlone(run_.hypotheses(), selected), counts);
+  const auto own = static_cast<Eigen::Index>(explanation_.effects.size());
+  SizeEvidence result{all.score.head(own), all.information.topLeftCorner(own, own)};
+  for (std::size_t i = 0; i < explanation_.shared.size(); ++i)
+    result.score +=
+        prior_mean(explanation_.shared[i], run_) * all.information.col(own + static_cast<Eigen::Index>(i)).head(own);
+  return result;
 }
 
 Runs::Runs(MissionInput recorded, Grade grade, const study::Progress& progress)
@@ -89,18 +120,21 @@ RunPtr Runs::first(const Explanation& explanation) {
                                               progress_);
 }
 
-RunPtr Runs::about(const Explanation& explanation, const RunPtr& other) {
-  const std::size_t key = combined(other->key(), explanation.hash());
-  if (RunPtr known = remembered(key, explanation)) return known;
-  MissionInput input = explained(explanation, other->mission());
-  loosen_start(other->mission().prepared(), other->mission().solution().smoothed.front(), input);
+RunPtr Runs::make(const Explanation& explanation, const ExplainedRun& other) {
+  MissionInput input = explained(explanation, other.mission());
+  loosen_start(other.mission().prepared(), other.mission().solution().smoothed.front(), input);
   for (const TurnOn& bias : explanation.shared) forget_standstill(bias, input.setup);
-  SensorsAtStart sensors = sensors_for(explanation, input, *other);
+  SensorsAtStart sensors = sensors_for(explanation, input, other);
   input.setup.start_sensor_errors = sensor_states_in(layout_of(input), sensors.layout, sensors.x);
   ++made_;
-  RunPtr run = std::make_shared<const ExplainedRun>(explanation, std::move(input), std::move(sensors), key, grade_, progress_);
-  if (last_.size() == kRemembered) last_.erase(last_.begin());
-  last_.push_back(run);
+  return std::make_shared<const ExplainedRun>(explanation, std::move(input), std::move(sensors), key_of(explanation, other),
+                                              grade_, progress_);
+}
+
+RunPtr Runs::about(const Explanation& explanation, const RunPtr& other) {
+  if (RunPtr known = remembered(explanation, *other)) return known;
+  RunPtr run = make(explanation, *other);
+  remember(run);
   return run;
 }
 
@@ -112,7 +146,30 @@ RunPtr Runs::try_about(const Explanation& explanation, const RunPtr& other) {
   }
 }
 
-RunPtr Runs::remembered(std::size_t key, const Explanation& explanation) const {
+std::vector<RunPtr> Runs::try_all(const std::vector<Request>& requests) {
+  std::vector<RunPtr> runs;
+  for (const Request& one : requests) runs.push_back(remembered(one.explanation, *one.about));
+  const std::vector<RunPtr> known = runs;
+  tbb::parallel_for(std::size_t{0}, requests.size(), [&](std::size_t i) {
+    if (runs[i]) return;
+    try {
+      runs[i] = make(requests[i].explanation, *requests[i].about);
+    } catch (const NumericalError&) {
+      runs[i] = nullptr;
+    }
+  });
+  for (std::size_t i = 0; i < runs.size(); ++i)
+    if (runs[i] && !known[i]) remember(runs[i]);
+  return runs;
+}
+
+void Runs::remember(const RunPtr& run) {
+  if (last_.size() == kRemembered) last_.erase(last_.begin());
+  last_.push_back(run);
+}
+
+RunPtr Runs::remembered(const Explanation& explanation, const ExplainedRun& other) const {
+  const std::size_t key = key_of(explanation, other);
   const auto is_it = [&](const RunPtr& run) { return run->key() == key && run->explanation() == explanation; };
   const auto known = std::ranges::find_if(last_, is_it);
   return known != last_.end() ? *known : nullptr;

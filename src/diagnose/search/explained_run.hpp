@@ -1,11 +1,13 @@
 #pragma once
 // A run of the mission with an explanation, and the runs made by a diagnosis; private to the room.
 
+#include <atomic>
 #include <memory>
 #include <optional>
 #include <vector>
 
 #include "evidence/mission_run.hpp"
+#include "evidence/selected_effects.hpp"
 #include "search/explanation.hpp"
 
 namespace coast::diagnose {
@@ -40,9 +42,15 @@ class ExplainedRun {
   [[nodiscard]] double log_likelihood() const;
   /// Whether the estimated sensor errors are far from those at its start.
   [[nodiscard]] bool found_sensors_elsewhere() const;
-  /// Scores and information, without draws. Computed once.
+  /// Scores and information, without draws. Computed when first asked for, by one thread.
   [[nodiscard]] const Examination& scores() const;
   [[nodiscard]] Examination examined(ExaminationOptions options) const;
+  /// Of the sizes of its own effects. Likewise.
+  [[nodiscard]] const SizeEvidence& sizes() const;
+  /// Computes both, after which several threads may ask.
+  void complete() const;
+  /// Sizes from some of the innovations.
+  [[nodiscard]] SizeEvidence sizes_where(const std::function<bool(geo::GpsTime)>& counts) const;
 
  private:
   Explanation explanation_;
@@ -52,10 +60,11 @@ class ExplainedRun {
   const study::Progress& progress_;
   MissionRun run_;
   mutable std::optional<Examination> scores_;
+  mutable std::optional<SizeEvidence> sizes_;
 };
 using RunPtr = std::shared_ptr<const ExplainedRun>;
 
-/// Makes the runs of a diagnosis. The last few are cached, so that repeated proposals need no new run.
+/// Makes the runs of a search. The last few are cached, so that repeated proposals need no new run. Not for several threads.
 class Runs {
  public:
   /// @param recorded  input of the diagnosis; @param progress  must outlive it
@@ -69,6 +78,12 @@ class Runs {
   [[nodiscard]] RunPtr about(const Explanation& explanation, const RunPtr& other);
   /// Likewise; null if the filter fails.
   [[nodiscard]] RunPtr try_about(const Explanation& explanation, const RunPtr& other);
+  struct Request {
+    Explanation explanation;
+    RunPtr about;
+  };
+  /// Likewise, several at a time on all threads.
+  [[nodiscard]] std::vector<RunPtr> try_all(const std::vector<Request>& requests);
   /// The mission with other sizes of the effects of a run, its start and its noise.
   [[nodiscard]] MissionInput with_sizes(const std::vector<SelectedEffect>& effects, const ExplainedRun& run) const;
 
@@ -76,18 +91,22 @@ class Runs {
   [[nodiscard]] Grade grade() const { return grade_; }
   [[nodiscard]] const study::Progress& progress() const { return progress_; }
   [[nodiscard]] std::size_t made() const { return made_; }
+  /// Adds runs that others made for the same outcome.
+  void count(std::size_t others) { made_ += others; }
 
  private:
   [[nodiscard]] MissionInput explained(const Explanation& explanation, const MissionRun& along) const;
   [[nodiscard]] SensorsAtStart sensors_for(const Explanation& explanation, const MissionInput& input,
                                            const ExplainedRun& other);
-  [[nodiscard]] RunPtr remembered(std::size_t key, const Explanation& explanation) const;
+  [[nodiscard]] RunPtr make(const Explanation& explanation, const ExplainedRun& other);
+  [[nodiscard]] RunPtr remembered(const Explanation& explanation, const ExplainedRun& other) const;
+  void remember(const RunPtr& run);
 
   MissionInput recorded_;
   Grade grade_;
   const study::Progress& progress_;
   std::vector<RunPtr> last_;
-  std::size_t made_ = 0;
+  std::atomic<std::size_t> made_ = 0;
 };
 
 }  // namespace coast::diagnose

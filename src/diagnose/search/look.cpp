@@ -26,7 +26,7 @@ std::optional<Form> likeliest_form(const Examination& examination, const State& 
 }  // namespace
 
 Look::Look(const State& standing, Context& context)
-    : state_(standing), context_(context), step_(movement(standing.run->scores(), standing.run->explanation().effects)) {
+    : state_(standing), context_(context), step_(movement(standing.run->sizes())) {
   state_.explanation = moved(standing.run->explanation(), step_);
   note_deviations(state_, step_);
 }

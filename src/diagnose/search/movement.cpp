@@ -11,11 +11,10 @@ std::vector<Eigen::Index> rows_of(const std::vector<SelectedEffect>& effects, Ei
   return rows;
 }
 
-Movement movement(const Examination& e, const std::vector<SelectedEffect>& effects) {
-  if (effects.empty()) return {};
-  const std::vector<Eigen::Index> rows = rows_of(effects, e.score.size() - static_cast<Eigen::Index>(e.started.size()));
-  const Eigen::MatrixXd covariance = covariance_of(e.information(rows, rows));
-  return {covariance * Eigen::VectorXd(e.score(rows)), covariance.diagonal().cwiseSqrt()};
+Movement movement(const SizeEvidence& evidence) {
+  if (evidence.score.size() == 0) return {};
+  const Eigen::MatrixXd covariance = covariance_of(evidence.information);
+  return {covariance * evidence.score, covariance.diagonal().cwiseSqrt()};
 }
 
 double Movement::farthest() const {

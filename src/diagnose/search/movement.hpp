@@ -16,15 +16,14 @@ struct Movement {
   /// Largest change, in standard deviations.
   [[nodiscard]] double farthest() const;
 };
-/// @param e  in which effects that begin at some time have started
-[[nodiscard]] Movement movement(const Examination& e, const std::vector<SelectedEffect>& effects);
+[[nodiscard]] Movement movement(const SizeEvidence& evidence);
 
 /// @param share  of the step
 [[nodiscard]] Explanation moved(Explanation explanation, const Movement& step, double share = 1.0);
 
 /// The explanation of a run with the sizes estimated in the run.
 [[nodiscard]] inline Explanation followed(const ExplainedRun& run) {
-  return moved(run.explanation(), movement(run.scores(), run.explanation().effects));
+  return moved(run.explanation(), movement(run.sizes()));
 }
 
 }  // namespace coast::diagnose

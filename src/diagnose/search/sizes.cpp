@@ -24,7 +24,7 @@ void keep_sizes(State& state) {
 State with_settled_sizes(State state, Context& context) {
   constexpr int kMost = 8;
   for (int i = 0; i < kMost; ++i) {
-    const Movement step = movement(state.run->scores(), state.run->explanation().effects);
+    const Movement step = movement(state.run->sizes());
     note_deviations(state, step);
     if (step.farthest() < kNear) return state;
     std::optional<State> next = first_accepted(moved_sizes(state, step), state, context);

@@ -65,10 +65,8 @@ namespace {
 
 /// Sizes from the blocks that are not held out.
 std::vector<SelectedEffect> sizes_without(std::size_t fold, const Blocks& blocks, const State& state) {
-  const Examination examination =
-      state.run->examined({.draws = 0, .counts = [&](geo::GpsTime t) { return blocks.of(t) % 2 != fold; }});
+  const Movement step = movement(state.run->sizes_where([&](geo::GpsTime t) { return blocks.of(t) % 2 != fold; }));
   std::vector<SelectedEffect> values = state.explanation.effects;
-  const Movement step = movement(examination, values);
   for (std::size_t i = 0; i < values.size(); ++i) {
     // For an effect that begins within the held-out blocks the others have hardly any information.
     const double by = step.by(static_cast<Eigen::Index>(i));
