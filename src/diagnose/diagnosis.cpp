@@ -2,9 +2,11 @@
 
 #include <fmt/format.h>
 #include <tbb/global_control.h>
+#include <tbb/parallel_for.h>
 #include <tbb/parallel_invoke.h>
 
 #include <algorithm>
+#include <deque>
 #include <functional>
 #include <memory>
 #include <mutex>
@@ -87,36 +89,68 @@ bool keep_likelier(Searched& best, Searched other, const Context& context) {
   return log_odds < 0.0;
 }
 
+/// A search with runs of its own, beside others.
+struct Aside {
+  explicit Aside(const Context& of)
+      : runs(of.runs.recorded(), of.runs.grade(), of.runs.progress()), context{of.options, of.asked_for, runs} {}
+  Runs runs;
+  Context context;
+};
+
 using Exchange = std::function<std::optional<State>(const State&, Context&)>;
 
-/// Makes an exchange and continues the search to its end; keeps the likelier of the two outcomes.
-/// @return  whether it is the new one
-bool goes_on_with(const Exchange& exchange, Searched& best, Context& context) {
+/// Makes an exchange and continues the search to its end; none if there is nothing to exchange.
+std::optional<Searched> after(const Exchange& exchange, const Searched& before, Context& context) {
   try {
-    std::optional<State> state = exchange(best.state, context);
-    if (!state) return false;
-    Searched other{*std::move(state), best.rejected};
+    std::optional<State> state = exchange(before.state, context);
+    if (!state) return std::nullopt;
+    Searched other{*std::move(state), before.rejected};
     search_to_the_end(other, context);
-    return keep_likelier(best, std::move(other), context);
+    return other;
   } catch (const NumericalError&) {  // a large effect missing at first may make the filter fail at any step
-    return false;
+    return std::nullopt;
   }
+}
+
+/// Tries exchanges of one state, several at a time; the first that is likelier is kept. @return  whether there is one
+bool keep_first_likelier(const std::vector<Exchange>& exchanges, Searched& best, Context& context) {
+  const Searched before = best;
+  before.state.run->complete();
+  const std::size_t width = tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism);
+  for (std::size_t first = 0; first < exchanges.size(); first += width) {
+    const std::size_t count = std::min(width, exchanges.size() - first);
+    std::deque<Aside> asides;
+    for (std::size_t i = 0; i < count; ++i) asides.emplace_back(context);
+    std::vector<std::optional<Searched>> outcomes(count);
+    tbb::parallel_for(std::size_t{0}, count,
+                      [&](std::size_t i) { outcomes[i] = after(exchanges[first + i], before, asides[i].context); });
+    for (std::size_t i = 0; i < count; ++i) {
+      context.runs.count(asides[i].runs.made());
+      if (outcomes[i] && keep_likelier(best, *std::move(outcomes[i]), context)) return true;
+    }
+  }
+  return false;
 }
 
 /// Replaces effects that begin at some time by those that act from the start on.
 void try_all_lasting(Searched& best, Context& context) {
-  for (std::size_t i = 0; i < best.state.explanation.effects.size();) {
-    const Exchange exchange = [i](const State& state, Context& c) { return with_lasting_effect(state, i, c); };
-    i = may_have_lasted(best.state, i) && goes_on_with(exchange, best, context) ? 0 : i + 1;
-  }
+  std::vector<Exchange> exchanges;
+  do {
+    exchanges.clear();
+    for (std::size_t i = 0; i < best.state.explanation.effects.size(); ++i)
+      if (may_have_lasted(best.state, i))
+        exchanges.emplace_back([i](const State& state, Context& c) { return with_lasting_effect(state, i, c); });
+  } while (keep_first_likelier(exchanges, best, context));
 }
 
 /// Replaces biases beyond the error model by effects that are constant during this mission.
 void try_all_constant(Searched& best, Context& context) {
-  for (std::size_t i = 0; i < best.state.start.beyond.size();) {
-    const Exchange exchange = [i](const State& state, Context& c) { return with_constant_effect(state, i, c); };
-    i = goes_on_with(exchange, best, context) ? 0 : i + 1;
-  }
+  std::vector<Exchange> exchanges;
+  do {
+    exchanges.clear();
+    for (std::size_t i = 0; i < best.state.start.beyond.size(); ++i)
+      exchanges.emplace_back([i](const State& state, Context& c) { return with_constant_effect(state, i, c); });
+  } while (keep_first_likelier(exchanges, best, context));
 }
 
 bool found_noise(const State& state) {
@@ -136,31 +170,32 @@ std::optional<Searched> with_means_first(const State& start, Context& context) {
 }
 
 /// The likelier of both orders, if noise was found. Where there are threads for it, they are searched at the same time.
-Searched likelier_order(const State& start, Context& context, Context& other_context) {
+Searched likelier_order(const State& start, Context& context) {
   Searched best{start};
   std::optional<Searched> other;
+  Aside aside(context);
   start.run->complete();  // both begin with it
   if (tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism) > 1) {
-    tbb::parallel_invoke([&] { search_to_the_end(best, context); }, [&] { other = with_means_first(start, other_context); });
+    tbb::parallel_invoke([&] { search_to_the_end(best, context); }, [&] { other = with_means_first(start, aside.context); });
   } else {
     search_to_the_end(best, context);
-    if (found_noise(best.state)) other = with_means_first(start, other_context);
+    if (found_noise(best.state)) other = with_means_first(start, aside.context);
   }
   if (other && found_noise(best.state)) {
-    context.runs.count(other_context.runs.made());
+    context.runs.count(aside.runs.made());
     keep_likelier(best, *std::move(other), context);
   }
   return best;
 }
 
 /// The likeliest of both orders and of all exchanges.
-Searched likeliest(const State& start, Context& context, Context& other_context) {
+Searched likeliest(const State& start, Context& context) {
   if (!context.options.exchanges) {
     Searched only{start};
     search_to_the_end(only, context);
     return only;
   }
-  Searched best = likelier_order(start, context, other_context);
+  Searched best = likelier_order(start, context);
   try_all_lasting(best, context);
   try_all_constant(best, context);
   return best;
@@ -187,16 +222,14 @@ Diagnosis diagnose(const MissionInput& input, const DiagnosisOptions& options, c
                    const std::vector<MissionInput>& simulations) {
   const study::Progress progress = one_at_a_time(to_tell);
   Runs runs(with_open_gate(input), grade_of(input.setup.model), progress);
-  Runs runs_of_other_order(with_open_gate(input), grade_of(input.setup.model), progress);
   Context context{options, input.setup.noise_fit, runs};
-  Context other_context{options, input.setup.noise_fit, runs_of_other_order};
   State start = begin(context);
   const Baseline baseline{start.run->mission().fit(), start.run->mission().solution().forward.innovations};
   start = with_draws(with_mended_samples(std::move(start), context), context);
   std::vector<TwinStatistic> before, after;
   if (options.twins > 0 || !simulations.empty())
     before = compared("running twins of the stated model", start, context, simulations);
-  const Searched best = likeliest(start, context, other_context);
+  const Searched best = likeliest(start, context);
   if (options.twins > 0 && has_found_anything(best.state, context))
     after = compared("running twins of the diagnosed model", best.state, context, {});
   Diagnosis result = diagnosis_of(best.state, context, baseline);

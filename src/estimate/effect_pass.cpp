@@ -96,9 +96,12 @@ class EffectRecursion {
 
   void through_transition(const Knot& knot, const NavRows& W) {
     const Eigen::MatrixXd NW = of_states_.N().leftCols<kNav>() * W;
-    N_.noalias() += W.transpose() * NW.topRows<kNav>();
-    const Eigen::MatrixXd cross = W.transpose() * N_cross_.topRows<kNav>();
-    N_ += cross + cross.transpose();
+    // W' N W + W' C + C' W, C the cross part: one product, of which half is needed.
+    const auto C = N_cross_.topRows<kNav>();
+    Eigen::MatrixXd left(2 * kNav, W.cols()), right(2 * kNav, W.cols());
+    left << W, C;
+    right << NW.topRows<kNav>() + C, W;
+    N_.triangularView<Eigen::Lower>() += left.transpose() * right;
     N_cross_ += NW;
     times_phi_transposed(knot, N_cross_);
     r_.noalias() += W.transpose() * of_states_.r().head<kNav>();
@@ -114,9 +117,10 @@ class EffectRecursion {
     const Eigen::MatrixXd NK = of_states_.N() * u.K;               // n x m
     const Eigen::MatrixXd KtN_cross = u.K.transpose() * N_cross_;  // m x p
     const Eigen::MatrixXd weight = u.S_inv + u.K.transpose() * NK;
-    const Eigen::MatrixXd DtKtN = D.transpose() * KtN_cross;
-    N_.noalias() += D.transpose() * (weight * D);
-    N_ -= DtKtN + DtKtN.transpose();
+    Eigen::MatrixXd left(2 * D.rows(), D.cols()), right(2 * D.rows(), D.cols());
+    left << D, KtN_cross;
+    right << weight * D - KtN_cross, -D;
+    N_.triangularView<Eigen::Lower>() += left.transpose() * right;
     // H' S^-1 D + (I - K H)' (N_cross - N K D)
     N_cross_.noalias() -= NK * D;
     N_cross_.noalias() += u.H.transpose() * (weight * D - KtN_cross);
@@ -155,7 +159,7 @@ class EffectRecursion {
   BlockTransitions blocks_;
   const EffectPassOptions& options_;
   Eigen::VectorXd r_;
-  Eigen::MatrixXd N_cross_, N_;
+  Eigen::MatrixXd N_cross_, N_;  ///< of N the lower triangle
   Eigen::MatrixXd null_x_, null_;
 };
 

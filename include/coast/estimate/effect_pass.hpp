@@ -54,7 +54,7 @@ struct Evidence {
   const Eigen::MatrixXd& N;          ///< n x n
   const Eigen::VectorXd& r_effects;  ///< p
   const Eigen::MatrixXd& N_cross;    ///< n x p
-  const Eigen::MatrixXd& N_effects;  ///< p x p
+  const Eigen::MatrixXd& N_effects;  ///< p x p, the lower triangle
   /// r and r_effects for the innovations of `EffectPassOptions::draw`: one column per draw.
   const Eigen::MatrixXd& null_r;          ///< n x draws
   const Eigen::MatrixXd& null_r_effects;  ///< p x draws

@@ -56,15 +56,18 @@ class Recorder {
   Recorder(const Hypotheses& hypotheses, const ExaminationOptions& options, const estimate::KnotStore& knots, Examination& into)
       : hypotheses_(hypotheses),
         into_(into),
+        left_(knots.size()),
         disturbances_(hypotheses, options, knots.size() > 0 ? knots.size() - 1 : 0, into.disturbances) {
     if (knots.size() > 0) earliest_ = knots.at(0).post.nav.t + kEpisode;
     for (Eigen::Index i = 0; i < hypotheses.size(); ++i)
       if (hypotheses[i].begins_at_some_time()) into.tracks.push_back({i, {}, {}, {}, Eigen::VectorXd::Zero(options.draws)});
   }
   void add(const estimate::Evidence& e) {
-    into_.score = -e.r_effects;
-    into_.information = e.N_effects;
-    into_.null_score = -e.null_r_effects;
+    if (--left_ == 0) {
+      into_.score = -e.r_effects;
+      into_.information = e.N_effects.selfadjointView<Eigen::Lower>();
+      into_.null_score = -e.null_r_effects;
+    }
     disturbances_.add(e);
     for (Examination::Track& track : into_.tracks) {
       const Eigen::Index i = track.hypothesis;
@@ -87,6 +90,7 @@ class Recorder {
  private:
   const Hypotheses& hypotheses_;
   Examination& into_;
+  std::size_t left_;  ///< knots
   DisturbanceRecorder disturbances_;
   geo::GpsTime earliest_;  ///< of an onset: earlier effects act from the start on
 };

@@ -1,5 +1,7 @@
 #include "evidence/random_fit.hpp"
 
+#include <tbb/parallel_invoke.h>
+
 #include <algorithm>
 #include <cmath>
 #include <utility>
@@ -36,9 +38,9 @@ struct Bracket {
 };
 Bracket uphill(const GainOfRoot& gain_at, double log_root) {
   constexpr int kMost = 8;
-  Bracket b{log_root, gain_at(log_root), 0.0, 0.0};
-  b.low = gain_at(log_root - kLogStep);
-  b.high = gain_at(log_root + kLogStep);
+  Bracket b{log_root, 0.0, 0.0, 0.0};
+  tbb::parallel_invoke([&] { b.gain = gain_at(log_root); }, [&] { b.low = gain_at(log_root - kLogStep); },
+                       [&] { b.high = gain_at(log_root + kLogStep); });
   for (int i = 0; i < kMost && std::max(b.low, b.high) > b.gain; ++i) {
     const bool up = b.high > b.low;
     b.log_root += up ? kLogStep : -kLogStep;

@@ -70,10 +70,13 @@ SizeEvidence evidence_of_sizes(const estimate::Mission& mission, const estimate:
                                const std::function<bool(geo::GpsTime)>& counts) {
   const std::vector<Eigen::Index> rows = selected.rows();
   SizeEvidence result;
+  std::size_t left = knots.size();
   estimate::effect_pass(mission, layout, knots, selected.effects(), {.draw = {}, .progress = {}, .counts = counts},
                         [&](const estimate::Evidence& e) {
+                          if (--left > 0) return;
                           result.score = -Eigen::VectorXd(e.r_effects(rows));
-                          result.information = e.N_effects(rows, rows);
+                          const Eigen::MatrixXd N = e.N_effects.selfadjointView<Eigen::Lower>();
+                          result.information = N(rows, rows);
                         });
   return result;
 }

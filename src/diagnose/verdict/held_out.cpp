@@ -1,5 +1,7 @@
 #include "verdict/held_out.hpp"
 
+#include <tbb/parallel_for_each.h>
+
 #include <algorithm>
 #include <cmath>
 #include <utility>
@@ -79,7 +81,7 @@ std::vector<SelectedEffect> sizes_without(std::size_t fold, const Blocks& blocks
 /// Each effect on the blocks of a fold, with the others. @param all  log-likelihoods with all of them
 void add_effects(const std::vector<SelectedEffect>& values, const std::vector<double>& all, std::size_t fold,
                  const Blocks& blocks, const State& state, const Context& context, std::vector<Verification::Effect>& effects) {
-  for (Verification::Effect& effect : effects) {
+  tbb::parallel_for_each(effects, [&](Verification::Effect& effect) {
     std::vector<SelectedEffect> others = values;
     const auto at = others.begin() + static_cast<std::ptrdiff_t>(effect.first);
     others.erase(at, at + static_cast<std::ptrdiff_t>(effect.count));
@@ -90,7 +92,7 @@ void add_effects(const std::vector<SelectedEffect>& values, const std::vector<do
       if (all[b] > less[b]) effect.better += 1.0 / static_cast<double>(blocks.count());
       ++effect.blocks;
     }
-  }
+  });
 }
 
 HeldOut summary(const std::vector<double>& with, const std::vector<double>& without, double epochs) {

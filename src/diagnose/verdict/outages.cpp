@@ -1,8 +1,11 @@
 #include "verdict/outages.hpp"
 
+#include <tbb/parallel_for_each.h>
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <vector>
 
 #include "coast/record/error.hpp"
 
@@ -50,14 +53,16 @@ std::optional<std::size_t> what_spoils_outages(const State& state, const Context
   const std::vector<SelectedEffect>& effects = state.explanation.effects;
   if (effects.empty()) return std::nullopt;
   if (!drifts_farther(fit_with({}, state, context), state.run->mission().fit())) return std::nullopt;
-  std::size_t worst = 0;
-  double least = std::numeric_limits<double>::infinity();
-  for_each_selection(state.account, [&](std::size_t first, std::size_t count) {
-    const double rms = fit_with(state.explanation.without(first, count).effects, state, context).outage_rms_m;
-    if (rms < least) worst = first;
-    least = std::min(least, rms);
+  struct Without {
+    std::size_t first, count;
+    double rms = 0.0;
+  };
+  std::vector<Without> all;
+  for_each_selection(state.account, [&](std::size_t first, std::size_t count) { all.push_back({first, count}); });
+  tbb::parallel_for_each(all, [&](Without& one) {
+    one.rms = fit_with(state.explanation.without(one.first, one.count).effects, state, context).outage_rms_m;
   });
-  return worst;
+  return std::ranges::min_element(all, {}, &Without::rms)->first;
 }
 
 }  // namespace coast::diagnose
