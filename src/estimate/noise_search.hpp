@@ -17,8 +17,8 @@ struct Likelihood {
   std::function<double(const Eigen::VectorXd&)> value;  ///< minus infinity if the filter fails
   std::function<NoiseScores()> scores;                  ///< at the point of the last call of value()
   /// Value at another point, in a pass that is not kept; several threads may call it at a time.
-  std::function<double(const Eigen::VectorXd&)> value_beside;
-  std::function<NoiseScores(const Eigen::VectorXd&, double& value)> scores_beside;  ///< likewise
+  std::function<double(const Eigen::VectorXd&)> value_beside = {};
+  std::function<NoiseScores(const Eigen::VectorXd&, double& value)> scores_beside = {};  ///< likewise
 };
 
 struct SearchPoint {

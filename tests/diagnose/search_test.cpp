@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <limits>
+
 #include "coast/geo/units.hpp"
 #include "coast/noise/gauss_markov.hpp"
 #include "diagnose/concealed.hpp"
@@ -80,6 +82,55 @@ TEST(Runs, RememberTheLastFew) {
   for (int i = 0; i < 8; ++i)
     static_cast<void>(runs.about(start.explanation.with({.hypothesis = 0, .value = 1e-3 * (i + 1)}), start.run));
   EXPECT_TRUE(first.expired());
+}
+
+// One about which the filter breaks down is missing, and the others are as if they were made alone.
+TEST(Runs, SeveralAtATimeAreThoseMadeOneByOne) {
+  const MissionInput input = test::honest_mission(1, 220.0);
+  Searching search(input), alone(input);
+  const State start = begin(search.context), other_start = begin(alone.context);
+  const auto shifted = [](const State& state, double size) {
+    return state.explanation.with({.hypothesis = index_of(state, "lever_arm_error", "y"), .value = size});
+  };
+  const double broken = std::numeric_limits<double>::quiet_NaN();
+  const std::vector<RunPtr> runs = search.context.runs.try_all(
+      {{shifted(start, 0.02), start.run}, {shifted(start, broken), start.run}, {shifted(start, 0.05), start.run}});
+  ASSERT_EQ(runs.size(), 3U);
+  ASSERT_TRUE(runs[0] && runs[2]);
+  EXPECT_FALSE(runs[1]);
+  for (const auto& [run, size] : {std::pair(runs[0], 0.02), std::pair(runs[2], 0.05)})
+    EXPECT_EQ(run->log_likelihood(), alone.context.runs.about(shifted(other_start, size), other_start.run)->log_likelihood());
+  const std::size_t made = search.context.runs.made();
+  EXPECT_EQ(search.context.runs.try_all({{shifted(start, 0.05), start.run}}).front(), runs[2]);
+  EXPECT_EQ(search.context.runs.made(), made);
+}
+
+// The pass of the whole catalogue is the reference: the same sums in another order, so only rounding differs.
+TEST(ExplainedRun, SizesAreThoseOfTheWholeCatalogue) {
+  Searching search(test::honest_mission(1, 220.0));
+  const State start = begin(search.context);
+  const geo::GpsTime middle = start.run->mission().path().front().t + 110.0;
+  Explanation explanation = start.explanation.with({.hypothesis = index_of(start, "lever_arm_error", "y"), .value = 0.03});
+  explanation = explanation.with({.hypothesis = index_of(start, "gnss_wrong_fix", "e"), .from = middle, .value = 0.05});
+  explanation = explanation.with({.hypothesis = index_of(start, "accel_scale_factor", "x"), .value = 1e-3});
+  explanation.shared.push_back({.sensor = noise::Sensor::kAccel, .axis = 1, .value = 0.05, .stated = 0.02});
+  const RunPtr run = search.context.runs.about(explanation, start.run);
+  const Examination& all = run->scores();
+  const std::vector<Eigen::Index> rows = rows_of(explanation.effects, run->hypotheses().size());
+  const Eigen::MatrixXd information = all.information(rows, rows);
+  const Eigen::VectorXd scores = all.score(rows);
+  for (Eigen::Index i = 0; i < 3; ++i) {
+    const double sigma = 1.0 / std::sqrt(information(i, i));
+    EXPECT_NEAR(run->sizes().score(i) * sigma, scores(i) * sigma, 1e-7);
+    for (Eigen::Index j = 0; j < 3; ++j)
+      EXPECT_NEAR(run->sizes().information(i, j), information(i, j), 1e-9 * std::sqrt(information(i, i) * information(j, j)));
+  }
+  EXPECT_GT(information(0, 0), 0.0);
+  // From the first half alone nothing is known of what begins in the second.
+  const SizeEvidence first_half = run->sizes_where([&](geo::GpsTime t) { return t < middle; });
+  EXPECT_EQ(first_half.information(1, 1), 0.0);
+  EXPECT_GT(first_half.information(0, 0), 0.0);
+  EXPECT_LT(first_half.information(0, 0), information(0, 0));
 }
 
 // What is likelier by less than a proposal asks for leaves no trace.

@@ -100,8 +100,10 @@ class AllFree {
   AllFree() : recording_(test::make_recording(options(), &model_, 21)) {}
 
   [[nodiscard]] test::Recording& recording() { return recording_; }
-  [[nodiscard]] NoiseFit fit(const NoiseAdjustment& from) const {
-    return fit_noise(recording_.mission(), stated_, {}, kAll, from, [this](const ForwardFilter& filter) {
+  [[nodiscard]] NoiseFit fit(const NoiseAdjustment& from, FitPrecision precision = FitPrecision::kOptimum) const {
+    NoiseFitChoice choice = kAll;
+    choice.precision = precision;
+    return fit_noise(recording_.mission(), stated_, {}, choice, from, [this](const ForwardFilter& filter) {
       std::mt19937_64 random(4);
       return test::drawn_start(filter, recording_.truth(test::mission_start()), {}, random);
     });
@@ -153,6 +155,20 @@ TEST(NoiseFit, EndsAtTheSameOptimumFromAnyStart) {
                               .gyro_factor = 10.0,
                               .accel_factor = 0.3};
   for (const NoiseAdjustment& from : {far, other}) expect_same(first, mission.fit(from), 2e-3);
+}
+
+// What a search of effects compares is likelihoods; its thresholds are some units of their logarithm.
+TEST(NoiseFit, ForASearchEndsNearTheOptimumInFewerPasses) {
+  const AllFree mission;
+  const NoiseAdjustment start = starting_point({}, AllFree::kAll);
+  const NoiseFit exact = mission.fit(start), quick = mission.fit(start, FitPrecision::kSearch);
+  expect_same(exact, quick, 0.05);
+  EXPECT_NEAR(quick.log_likelihood_after, exact.log_likelihood_after, 0.01);
+  EXPECT_LT(quick.evaluations, 0.7 * exact.evaluations);
+  for (std::size_t i = 0; i < exact.log_sd.size(); ++i)
+    if (std::isfinite(exact.log_sd[i])) {
+      EXPECT_NEAR(quick.log_sd[i] / exact.log_sd[i], 1.0, 0.1) << exact.names[i];
+    }
 }
 
 TEST(NoiseFit, FindsWhatWasSimulatedWithinItsSigmas) {

@@ -133,5 +133,32 @@ TEST(BestStep, IsTheHighestPointOfTheBox) {
   EXPECT_LT(on_bounds, 90);
 }
 
+// A parabola whose scores point beside its top, as those do that leave a share of the slope out: the search ends beside it, and
+// goes there without ever going down.
+TEST(Climb, EndsWhereScoresLeadNoHigher) {
+  constexpr double kBeside = 0.3;  // sigmas
+  int passes = 0;
+  double last = 0.0;
+  Eigen::VectorXd at;
+  const Likelihood likelihood{
+      .value =
+          [&](const Eigen::VectorXd& theta) {
+            ++passes;
+            at = theta;
+            return last = -0.5 * theta.squaredNorm();
+          },
+      .scores =
+          [&] {
+            return NoiseScores{-at + Eigen::VectorXd::Constant(2, kBeside), 0.2 * Eigen::MatrixXd::Identity(2, 2)};
+          }};
+  const Eigen::VectorXd far = Eigen::VectorXd::Constant(2, 40.0);
+  SearchState state{point_at(likelihood, Eigen::Vector2d(3.0, -2.0)), {}};
+  const double start = state.at.value;
+  climb(likelihood, {-far, far}, 1e-3, state);
+  EXPECT_GT(state.at.value, start);
+  EXPECT_GT(state.at.value, -kBeside * kBeside);  // both coordinates beside the top by kBeside, or nearer
+  EXPECT_LT(passes, 20);
+}
+
 }  // namespace
 }  // namespace coast
