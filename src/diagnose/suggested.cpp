@@ -25,7 +25,12 @@ struct Worded : Effect {
   std::string equation_text;
   std::string relation_text;
   std::string unit_text;
+  std::string sentence_text;
 };
+
+std::string_view called(Site site) {
+  return site == Site::kGyro ? "Gyro" : "Accelerometer";
+}
 
 Columns of(Site site, SensorErrors& errors) {
   return site == Site::kGyro ? errors.gyro : errors.accel;
@@ -49,6 +54,9 @@ EffectPtr harmonic_disturbance(Site site, int axis, double frequency, double pha
   effect->unit = unit_of(site);
   effect->equation_text = fmt::format("d_{} = A sin(2 pi {:.5g} Hz t + {:.3g})", axis_name, frequency, phase);
   effect->equation = effect->equation_text;
+  effect->sentence_text =
+      fmt::format("{} {} carries an oscillation of {{size}} at {:.4g} Hz.", called(site), axis_name, frequency);
+  effect->sentence = effect->sentence_text;
   effect->meaning = "An oscillation of one frequency, from a vibration that is aliased or from electronics.";
   effect->separating_manoeuvre = "Rest and motion: what the vehicle does not bring about goes on at rest.";
   effect->source = "IEEE Std 952-2020, sinusoidal noise";
@@ -75,6 +83,9 @@ EffectPtr unknown_relation(Site site, int axis, const std::string& relation) {
   effect->equation = effect->equation_text;
   effect->unit_text = fmt::format("{} per unit of {}", unit_of(site), relation);
   effect->unit = effect->unit_text;
+  effect->sentence_text = fmt::format("{} {} errs in proportion to {}, by {{size}}; no effect that is known does that.",
+                                      called(site), axis_name, relation);
+  effect->sentence = effect->sentence_text;
   effect->meaning = "A relation that the catalogue has no name for.";
   effect->separating_manoeuvre = "Another mission: a relation found by search is believed when it is found again.";
   effect->source = "Brunton, Proctor & Kutz (2016), sparse regression";

@@ -10,6 +10,8 @@ Effect accel_misalignment() {
       .unit = "rad",
       .equation = "d(f)_i = M_ij f_j",
       .meaning = "An accelerometer feels a share of the force along another axis.",
+      .sentence = "Accelerometer {axis} leans {way} axis {cause} by {size}.",
+      .ways = {{"towards", "away from"}},
       .separating_manoeuvre = "Braking and turning separately; for the share of gravity, tilts or turns of the heading.",
       .source = "Groves (2013), section 4.4.2",
       .axes = six_pairs(),

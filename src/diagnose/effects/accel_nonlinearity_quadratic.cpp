@@ -10,6 +10,7 @@ Effect accel_nonlinearity_quadratic() {
       .unit = "1/(m/s^2)",
       .equation = "d(f)_i = K2_i f_i^2",
       .meaning = "An accelerometer errs by the square of the force, whatever its sign.",
+      .sentence = "Accelerometer {axis} errs by {size} times the square of the force.",
       .separating_manoeuvre = "Equal forces of both signs and of different sizes along that axis.",
       .source = "IEEE Std 1293-2018, K2",
       .axes = three_axes(),

@@ -10,6 +10,8 @@ Effect accel_scale_factor() {
       .unit = "1",
       .equation = "d(f)_i = S_i f_i",
       .meaning = "An accelerometer measures forces too large or too small by a constant share.",
+      .sentence = "Accelerometer {axis} measures forces {size} too {way}.",
+      .ways = {{"large", "small"}},
       .separating_manoeuvre = "Braking and accelerating hard; about the vertical, tilts of 30 degrees or vertical manoeuvres.",
       .source = "Groves (2013), section 4.4.2",
       .axes = three_axes(),

@@ -10,6 +10,7 @@ Effect accel_sign_asymmetric_scale() {
       .unit = "1",
       .equation = "d(f)_i = Ka_i |f_i|",
       .meaning = "An accelerometer has another scale factor for pushing than for pulling.",
+      .sentence = "Accelerometer {axis} errs by {size} of the size of the force, whatever its sign.",
       .separating_manoeuvre =
           "Forces of both signs and of very different sizes: against the square they differ by their curve alone.",
       .source = "IEEE Std 1293-2018, asymmetry",

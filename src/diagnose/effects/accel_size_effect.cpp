@@ -10,6 +10,7 @@ Effect accel_size_effect() {
       .unit = "m",
       .equation = "d(f)_i = u_i . (omega_dot x r_i + omega x (omega x r_i))",
       .meaning = "The three accelerometers do not sit at one point: each feels the rotation about its own.",
+      .sentence = "Accelerometer {axis} sits {size} away from the point of reference along {cause}.",
       .separating_manoeuvre = "Fast turns about several axes; a shift common to all three is a lever arm.",
       .source = "Savage (1998), size effect",
       .axes = nine_pairs(),

@@ -10,6 +10,7 @@ Effect accel_temperature_bias() {
       .unit = "m/s^2/K",
       .equation = "d(f)_i = k_i (T - mean T)",
       .meaning = "The bias of an accelerometer follows the temperature.",
+      .sentence = "The bias of accelerometer {axis} changes with the temperature by {size}.",
       .separating_manoeuvre = "Temperatures that rise and fall again; against a slow bias, minutes at constant temperature.",
       .source = "Groves (2013), section 4.4.1",
       .axes = three_axes(),

@@ -12,6 +12,8 @@ Effect antenna_mount_slip() {
       .unit = "m",
       .equation = "r_a = r_b + C_b_e (l + dl)",
       .meaning = "The antenna moves on the vehicle and stays at its new place.",
+      .sentence = "The antenna moved {size} {way}.",
+      .ways = {{"forward", "backward"}, {"right", "left"}, {"down", "up"}},
       .separating_manoeuvre = "Turns before and behind the slip.",
       .source = "de Jong & Penzer (1998)",
       .axes = three_axes(),

@@ -12,6 +12,7 @@ Effect antenna_phase_center_heading_dependent() {
       .unit = "m",
       .equation = "d(r)_D = a cos(heading) + b sin(heading)",
       .meaning = "The antenna's phase centre moves up and down with the heading.",
+      .sentence = "With the heading the antenna's phase centre moves down by {size} times its {axis}.",
       .separating_manoeuvre = "All headings at constant speed, both ways round.",
       .source = "ANTEX 1.4: azimuth-dependent phase-centre variations",
       .axes = {"cos", "sin"},

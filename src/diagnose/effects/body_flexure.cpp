@@ -10,6 +10,7 @@ Effect body_flexure() {
       .unit = "s^2",
       .equation = "d(r)_b,i = -k_i a_b,i: the antenna stays behind as the body accelerates",
       .meaning = "What carries the antenna bends under acceleration.",
+      .sentence = "Under acceleration along {axis} the antenna lags behind the body by {size}.",
       .separating_manoeuvre = "Braking and turning hard; a smoothing receiver bends all axes alike and the other way.",
       .source = "static deflection m a / k",
       .axes = three_axes(),

@@ -10,6 +10,7 @@ Effect coning_omitted() {
       .unit = "1",
       .equation = "d(omega) = -c (dtheta' x dtheta) / (12 dt), c = 1 where the increments lack their coning",
       .meaning = "Angles were summed up as if rotations commuted.",
+      .sentence = "{size} of the coning correction is missing from the recorded angles.",
       .separating_manoeuvre = "Sustained angular vibration about two axes, and none.",
       .source = "Savage (1998), eq. (33)",
       .axes = {""},

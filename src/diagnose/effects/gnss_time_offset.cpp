@@ -20,6 +20,8 @@ Effect gnss_time_offset() {
       .unit = "s",
       .equation = "a fix tagged t is valid at t - d: r_a(t) - v_a d",
       .meaning = "GNSS and IMU do not agree about the time.",
+      .sentence = "The fixes are valid {size} {way} than their tags say.",
+      .ways = {{"earlier", "later"}},
       .separating_manoeuvre = "Speed changes on a straight; a lever arm forward looks the same at constant speed.",
       .source = "Skog & Haendel (2011)",
       .axes = {""},

@@ -11,6 +11,8 @@ Effect gnss_wrong_fix() {
       .unit = "m",
       .equation = "d(r)_n = constant from t0 to t1",
       .meaning = "Integers were fixed wrongly for a while: positions are shifted with small sigmas.",
+      .sentence = "The fixes are {size} too far {way}.",
+      .ways = {{"north", "south"}, {"east", "west"}, {"down", "up"}},
       .separating_manoeuvre = "None needed: entry and exit are jumps that no vehicle makes.",
       .source = "de Jong & Penzer (1998)",
       .axes = {"n", "e", "d"},

@@ -10,6 +10,7 @@ Effect gyro_g2_sensitivity() {
       .unit = "rad/s/(m/s^2)^2",
       .equation = "d(omega)_i = G2_ij f_j^2",
       .meaning = "A gyro answers to the square of a force, whatever its sign: anisoelasticity.",
+      .sentence = "Gyro {axis} answers to the square of forces along {cause} with {size}.",
       .separating_manoeuvre = "Equal forces of both signs along that axis.",
       .source = "Titterton & Weston (2004), section 4.8",
       .axes = nine_pairs(),

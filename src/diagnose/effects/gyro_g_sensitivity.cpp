@@ -10,6 +10,7 @@ Effect gyro_g_sensitivity() {
       .unit = "rad/s/(m/s^2)",
       .equation = "d(omega)_i = G_ij f_j",
       .meaning = "A gyro answers to acceleration as if it were a rotation.",
+      .sentence = "Gyro {axis} answers to forces along {cause} with {size}.",
       .separating_manoeuvre = "Braking and accelerating on a straight; the share of gravity shows in tilts alone.",
       .source = "Groves (2013), section 4.4.4",
       .axes = nine_pairs(),

@@ -10,6 +10,8 @@ Effect gyro_misalignment() {
       .unit = "rad",
       .equation = "d(omega)_i = M_ij omega_j",
       .meaning = "A gyro feels a share of the rotation about another axis: its sensitive axis is not where it should be.",
+      .sentence = "Gyro {axis} leans {way} axis {cause} by {size}.",
+      .ways = {{"towards", "away from"}},
       .separating_manoeuvre = "Rotations about one axis at a time: roll and pitch beside yaw.",
       .source = "Groves (2013), section 4.4.2",
       .axes = six_pairs(),

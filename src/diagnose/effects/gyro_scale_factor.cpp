@@ -10,6 +10,8 @@ Effect gyro_scale_factor() {
       .unit = "1",
       .equation = "d(omega)_i = S_i omega_i",
       .meaning = "A gyro measures turns too long or too short by a constant share.",
+      .sentence = "Gyro {axis} measures rotations {size} too {way}.",
+      .ways = {{"large", "small"}},
       .separating_manoeuvre = "Turns of both senses about that axis, at different speeds.",
       .source = "Groves (2013), section 4.4.2",
       .axes = three_axes(),

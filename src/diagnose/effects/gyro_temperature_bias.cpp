@@ -10,6 +10,7 @@ Effect gyro_temperature_bias() {
       .unit = "rad/s/K",
       .equation = "d(omega)_i = k_i (T - mean T)",
       .meaning = "The bias of a gyro follows the temperature.",
+      .sentence = "The bias of gyro {axis} changes with the temperature by {size}.",
       .separating_manoeuvre = "Temperatures that rise and fall again; against a slow bias, minutes at constant temperature.",
       .source = "Groves (2013), section 4.4.1",
       .axes = three_axes(),

@@ -10,6 +10,8 @@ Effect imu_clock_drift() {
       .unit = "1",
       .equation = "tag of the IMU = t + e t: in its time fixes come e t later, velocities are larger by e, d(f) = e (f + 2 g)",
       .meaning = "The IMU's clock runs fast or slow against GPS time.",
+      .sentence = "The clock of the IMU runs {size} too {way}.",
+      .ways = {{"fast", "slow"}},
       .separating_manoeuvre = "Minutes with speed changes: a constant offset does not grow.",
       .source = "Stebler et al. (2011), Time Synchronization",
       .axes = {""},

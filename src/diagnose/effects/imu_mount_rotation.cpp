@@ -11,6 +11,7 @@ Effect imu_mount_rotation() {
       .unit = "rad",
       .equation = "from t0 on d(omega) = -theta x omega, d(f) = -theta x f: both triads turned by theta",
       .meaning = "The IMU turns on its mount and stays turned.",
+      .sentence = "The IMU turned on its mount by {size} about its axis {axis}.",
       .separating_manoeuvre = "Accelerations along known directions before and behind the slip.",
       .source = "small rotation of the sensor axes",
       .axes = three_axes(),

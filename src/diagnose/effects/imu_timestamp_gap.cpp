@@ -13,6 +13,8 @@ Effect imu_timestamp_gap() {
       .equation = "from t0 on a fix tagged t is valid at t - d",
       .meaning =
           "From some instant on the tags of IMU and GNSS are shifted against each other: samples were lost, or counted twice.",
+      .sentence = "The fixes are valid {size} {way} against the IMU than before.",
+      .ways = {{"earlier", "later"}},
       .separating_manoeuvre = "Speed changes before and behind the gap.",
       .source = "de Jong & Penzer (1998)",
       .axes = {""},

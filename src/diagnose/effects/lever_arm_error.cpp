@@ -20,6 +20,8 @@ Effect lever_arm_error() {
       .unit = "m",
       .equation = "r_a = r_b + C_b_e (l + dl)",
       .meaning = "The antenna is not where the configuration puts it.",
+      .sentence = "The antenna is {size} further {way} than stated.",
+      .ways = {{"forward", "backward"}, {"right", "left"}, {"down", "up"}},
       .separating_manoeuvre = "Turns of both senses and speed changes; for the vertical component, roll and pitch.",
       .source = "Groves (2013), eq. (14.94)",
       .axes = three_axes(),

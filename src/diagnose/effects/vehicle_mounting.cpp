@@ -10,6 +10,7 @@ Effect vehicle_mounting() {
       .unit = "rad",
       .equation = "the vehicle rolls along Rz(c_z + z) Ry(c_y + y) e_x, c the configured yaw and pitch",
       .meaning = "The vehicle does not roll where the configured mounting says it does.",
+      .sentence = "The vehicle drives {size} off the configured mounting about {axis}.",
       .separating_manoeuvre = "None needed: speed shows it.",
       .source = "Groves (2013), section 15.4.1",
       .axes = {"y", "z"},

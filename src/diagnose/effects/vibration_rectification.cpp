@@ -10,6 +10,7 @@ Effect vibration_rectification() {
       .unit = "1/(m/s^2)",
       .equation = "d(f)_i = k_i var(f_i), variance of the vibration",
       .meaning = "Vibration shifts the bias of an accelerometer.",
+      .sentence = "Vibration shifts the bias of accelerometer {axis} by {size} times its variance.",
       .separating_manoeuvre = "Rough and smooth ground at the same speed; the engine on and off at rest.",
       .source = "IEEE Std 1293-2018, vibration rectification",
       .axes = three_axes(),

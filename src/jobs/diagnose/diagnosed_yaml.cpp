@@ -44,6 +44,44 @@ bool stated_by_key(const diagnose::Finding& f) {
   return f.hypothesis.effect->key && !f.from && !f.to;
 }
 
+/// A changed line of the run file.
+struct Line {
+  std::string_view section;
+  std::string_view key;
+  std::string value;
+};
+
+std::string noise_of_gnss(const study::Setup& setup) {
+  const estimate::GnssScale& scale = setup.filter.gnss_scale;
+  const estimate::CorrelatedGnss& correlated = setup.filter.auxiliary.correlated_gnss;
+  return fmt::format(
+      "{{scale_horizontal: {:.17g}, scale_vertical: {:.17g}, scale_velocity: {:.17g}, correlated_horizontal_m: {:.17g}, "
+      "correlated_vertical_m: {:.17g}, correlated_time_s: {:.17g}}}",
+      scale.horizontal, scale.vertical, scale.velocity, correlated.horizontal_m, correlated.vertical_m, correlated.time_s);
+}
+
+std::vector<Line> lines(const diagnose::Diagnosis& d, const std::string& error_model) {
+  std::vector<Line> all;
+  if (changes_error_model(d)) all = {{"imu", "error_model", error_model}, {"imu", "noise", "stated"}};
+  // Names of keys are literals.
+  for (const diagnose::RunKey& key : keys_found(d)) all.push_back({key.section, key.name, key.text(d.modelled.setup)});
+  if (std::ranges::any_of(d.noise, [](const diagnose::NoiseFinding& f) { return f.sensor == "gnss"; }))
+    all.push_back({"gnss", "noise", noise_of_gnss(d.modelled.setup)});
+  return all;
+}
+
+/// The section `effects`; empty if there are none.
+std::string effect_entries(const diagnose::Diagnosis& d) {
+  std::string entries;
+  for (const diagnose::Finding& f : d.findings)
+    if (!stated_by_key(f)) entries += entry(f);
+  for (const diagnose::NoiseFinding& f : d.noise)
+    if (f.place == diagnose::NoiseFinding::Place::kEffects)
+      entries += fmt::format("  - {{name: {}, sensor: {}, axis: {}, value: {:.17g}}}  # +- {:.2g} {}\n", f.name, f.sensor,
+                             f.axis, f.value, f.sd, f.unit);
+  return entries.empty() ? entries : "effects:\n" + entries;
+}
+
 }  // namespace
 
 std::vector<diagnose::RunKey> keys_found(const diagnose::Diagnosis& d) {
@@ -63,29 +101,21 @@ bool changes_error_model(const diagnose::Diagnosis& d) {
 std::string diagnosed_yaml(const std::string& resolved, const diagnose::Diagnosis& d, const std::string& error_model) {
   std::string text = resolved;
   if (!text.empty() && text.back() != '\n') text += '\n';
-  if (changes_error_model(d)) text = with_value(with_value(text, "imu", "error_model", error_model), "imu", "noise", "stated");
-  bool of_gnss = false;
-  std::string entries;
-  for (const diagnose::RunKey& key : keys_found(d)) text = with_value(text, key.section, key.name, key.text(d.modelled.setup));
-  for (const diagnose::Finding& f : d.findings)
-    if (!stated_by_key(f)) entries += entry(f);
-  for (const diagnose::NoiseFinding& f : d.noise) {
-    of_gnss = of_gnss || f.sensor == "gnss";
-    if (f.place == diagnose::NoiseFinding::Place::kEffects)
-      entries += fmt::format("  - {{name: {}, sensor: {}, axis: {}, value: {:.17g}}}  # +- {:.2g} {}\n", f.name, f.sensor,
-                             f.axis, f.value, f.sd, f.unit);
+  for (const Line& line : lines(d, error_model)) text = with_value(text, line.section, line.key, line.value);
+  return text + effect_entries(d);
+}
+
+std::string changed_lines(const diagnose::Diagnosis& d, const std::string& error_model) {
+  std::string text;
+  std::string_view section;
+  std::vector<Line> changed = lines(d, error_model);
+  std::ranges::stable_sort(changed, std::ranges::greater{}, &Line::section);  // imu before gnss
+  for (const Line& line : changed) {
+    if (line.section != section) text += fmt::format("{}:\n", line.section);
+    section = line.section;
+    text += fmt::format("  {}: {}\n", line.key, line.value);
   }
-  if (of_gnss) {
-    const estimate::GnssScale& scale = d.modelled.setup.filter.gnss_scale;
-    const estimate::CorrelatedGnss& correlated = d.modelled.setup.filter.auxiliary.correlated_gnss;
-    text =
-        with_value(text, "gnss", "noise",
-                   fmt::format("{{scale_horizontal: {:.17g}, scale_vertical: {:.17g}, scale_velocity: {:.17g}, "
-                               "correlated_horizontal_m: {:.17g}, correlated_vertical_m: {:.17g}, correlated_time_s: {:.17g}}}",
-                               scale.horizontal, scale.vertical, scale.velocity, correlated.horizontal_m, correlated.vertical_m,
-                               correlated.time_s));
-  }
-  return entries.empty() ? text : text + "effects:\n" + entries;
+  return text + effect_entries(d);
 }
 
 }  // namespace coast::jobs

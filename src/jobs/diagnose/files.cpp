@@ -27,7 +27,9 @@ void write(const DiagnosisConfig& config, const DiagnosisResult& result, const s
   else
     std::filesystem::remove(folder / kErrorModel);  // of an earlier diagnosis
   io::write_text(folder / "run.diagnosed.yaml", diagnosed);
-  write_page(diagnosis_page(config.run.file.filename().string(), result, diagnosed), folder);
+  write_page(
+      diagnosis_page(config.run.file.filename().string(), result, diagnosed, changed_lines(result.diagnosis, kErrorModel)),
+      folder);
   io::write_text(folder / "diagnosis.json", diagnosis_json(result));
 }
 

@@ -22,6 +22,8 @@ inline constexpr std::string_view kQuick =
 /// name of the error model if it has changed. @param resolved  run.resolved.yaml
 [[nodiscard]] std::string diagnosed_yaml(const std::string& resolved, const diagnose::Diagnosis& diagnosis,
                                          const std::string& error_model);
+/// Only those lines of it that differ from the configuration.
+[[nodiscard]] std::string changed_lines(const diagnose::Diagnosis& diagnosis, const std::string& error_model);
 /// The keys of the run file for findings: lever arm, time offset.
 [[nodiscard]] std::vector<diagnose::RunKey> keys_found(const diagnose::Diagnosis& diagnosis);
 /// Why the findings are no improvement: the recording is no likelier with them, or outages drift farther. Empty
@@ -31,8 +33,9 @@ inline constexpr std::string_view kQuick =
 [[nodiscard]] std::string_view why_rejected(diagnose::Rejected::Reason reason);
 /// Whether the error model with the findings differs from the configured one.
 [[nodiscard]] bool changes_error_model(const diagnose::Diagnosis& diagnosis);
+/// @param changed  changed_lines()
 [[nodiscard]] report::Page diagnosis_page(const std::string& title, const DiagnosisResult& result,
-                                          const std::string& diagnosed_yaml);
+                                          const std::string& diagnosed_yaml, const std::string& changed);
 /// The section that compares the recording with its twins.
 [[nodiscard]] report::Section twin_section(const diagnose::Diagnosis& diagnosis,
                                            const std::optional<SimulationCheck>& simulation);

@@ -6,6 +6,8 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "coast/diagnose/sentence.hpp"
+
 namespace coast::jobs {
 
 namespace {
@@ -57,6 +59,7 @@ Json finding_json(const diagnose::Finding& f, double start_s, double end_s) {
   if (f.held_out_gain) j["held_out_gain"] = *f.held_out_gain;
   j["delta_log_likelihood"] = f.delta_log_likelihood;
   j["p_value"] = f.p_value;
+  j["sentence"] = diagnose::sentence(f);
   j["explanation"] = explanation(f);
   j["confounded_with"] = Json::array();
   for (const diagnose::Alternative& a : f.alternatives) {
@@ -74,6 +77,7 @@ Json noise_json(const diagnose::NoiseFinding& f, double start_s, double end_s) {
   }
   j["delta_log_likelihood"] = f.delta_log_likelihood;
   j["p_value"] = f.p_value;
+  j["sentence"] = diagnose::sentence(f);
   j["explanation"] = explanation(f);
   j["confounded_with"] = Json::array();
   for (const diagnose::Alternative& a : f.alternatives)
@@ -237,10 +241,13 @@ std::string diagnosis_text(const DiagnosisResult& result) {
   std::string text;
   if (d.findings.empty() && d.noise.empty()) text = "Nothing is missing from the model that this mission could show.\n";
   for (const diagnose::Finding& f : d.findings)
-    text += fmt::format("{}{}: {}{}\n", full_name(f.hypothesis),
-                        f.from ? fmt::format(" from {:.1f} s", f.from->sow()) : std::string(), explanation(f),
-                        in_simulation(f, simulation));
-  for (const diagnose::NoiseFinding& f : d.noise) text += fmt::format("{}: {}\n", full_name(f), explanation(f));
+    text +=
+        fmt::format("{} [{}]{}{}\n", diagnose::sentence(f), full_name(f.hypothesis),
+                    other_readings(f.alternatives, f.hypothesis.effect->separating_manoeuvre), in_simulation(f, simulation));
+  for (const diagnose::NoiseFinding& f : d.noise)
+    text +=
+        fmt::format("{} [{}]{}\n", diagnose::sentence(f), full_name(f), other_readings(f.alternatives, f.separating_manoeuvre));
+  if (const std::string gain = diagnose::consequence(d); !gain.empty()) text += gain + "\n";
   for (const diagnose::RunKey& key : keys_found(d))
     text += fmt::format("The run file states it: `{}: {{{}: {}}}`.\n", key.section, key.name, key.text(d.modelled.setup));
   if (const std::string why = why_not_accepted(d); !why.empty()) text += fmt::format("Not accepted. {}\n", why);

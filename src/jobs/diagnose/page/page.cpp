@@ -4,6 +4,7 @@
 
 #include <cmath>
 
+#include "coast/diagnose/sentence.hpp"
 #include "common/page_parts.hpp"
 #include "diagnose/result.hpp"
 
@@ -61,6 +62,16 @@ std::string when(const diagnose::Finding& f) {
   return f.to ? fmt::format("{} to {:.1f}", begin, f.to->sow()) : fmt::format("from {}", begin);
 }
 
+/// How sure the name of a finding is.
+std::string certainty(const std::vector<diagnose::Alternative>& alternatives) {
+  if (alternatives.empty()) return "Nothing else that is known explains it.";
+  const diagnose::Alternative& first = alternatives.front();
+  const std::string name = fmt::format("{} {}{}{}", first.name, first.sensor, first.axis.empty() ? "" : " ", first.axis);
+  if (first.log_odds < 0.7)  // two to one
+    return fmt::format("{} explains it as well: which of the two it is this recording does not tell.", name);
+  return fmt::format("Less likely, but possible: {}.", name);
+}
+
 report::Table finding_table(const Diagnosis& d) {
   report::Table table;
   table.id = "findings";
@@ -81,6 +92,21 @@ report::Table finding_table(const Diagnosis& d) {
     table.rows.push_back(cells(
         {f.name, f.sensor, f.axis, "", sized(f.value, f.sd, f.unit), number(f.delta_log_likelihood), "", p_value(f.p_value)}));
   return table;
+}
+
+/// For whoever wants to know what to do and not why.
+report::Section plain_section(const Diagnosis& d, const std::string& changed) {
+  report::Section section;
+  section.id = "plain";
+  section.title = "In plain words";
+  for (const diagnose::Finding& f : d.findings)
+    section.notes.push_back({report::Note::Kind::kWarning, diagnose::sentence(f), certainty(f.alternatives)});
+  for (const diagnose::NoiseFinding& f : d.noise)
+    section.notes.push_back({report::Note::Kind::kWarning, diagnose::sentence(f), certainty(f.alternatives)});
+  section.lead = diagnose::consequence(d);
+  if (const std::string why = why_not_accepted(d); !why.empty()) section.lead = why;
+  section.notes.push_back({report::Note::Kind::kCode, "What to write into the run file (run.diagnosed.yaml has it)", changed});
+  return section;
 }
 
 report::Section missing_section(const Diagnosis& d, const std::optional<SimulationCheck>& simulation) {
@@ -188,7 +214,8 @@ report::Section detectable_section(const Diagnosis& d) {
 
 }  // namespace
 
-report::Page diagnosis_page(const std::string& title, const DiagnosisResult& result, const std::string& diagnosed_yaml) {
+report::Page diagnosis_page(const std::string& title, const DiagnosisResult& result, const std::string& diagnosed_yaml,
+                            const std::string& changed) {
   const Diagnosis& d = result.diagnosis;
   const std::optional<SimulationCheck>& simulation = result.simulation;
   report::Page page;
@@ -196,7 +223,9 @@ report::Page diagnosis_page(const std::string& title, const DiagnosisResult& res
   page.subtitle = "What the configured model leaves out";
   if (!d.innovations_before.empty()) page.start = d.innovations_before.front().t;
   page.tiles = diagnosis_tiles(d);
-  page.sections = {missing_section(d, simulation), fit_section(d)};
+  if (!d.findings.empty() || !d.noise.empty()) page.sections.push_back(plain_section(d, changed));
+  page.sections.push_back(missing_section(d, simulation));
+  page.sections.push_back(fit_section(d));
   if (result.quick) page.sections.front().notes.push_back({report::Note::Kind::kInfo, "Quick", std::string(kQuick)});
   if (!d.twins.empty()) page.sections.push_back(twin_section(d, simulation));
   page.sections.push_back(detectable_section(d));
