@@ -113,6 +113,17 @@ TEST(DiagnoseCommand, FindsAWrongLeverArmAndTheRunWithoutItFits) {
   const nlohmann::json stated = test::load_yaml_as_json(wrong);
   EXPECT_NEAR(written["imu"]["lever_arm_m"][1].get<double>(),
               stated["imu"]["lever_arm_m"][1].get<double>() + size["value"].get<double>(), 1e-4);
+
+  // The page begins with what was found in plain words, and with the line to write and no other.
+  const nlohmann::json plain = nlohmann::json::parse(text_of(out / "report.json"))["sections"][0];
+  EXPECT_EQ(plain["id"], "plain");
+  EXPECT_EQ(plain["notes"][0]["title"], effect["sentence"]);
+  EXPECT_TRUE(effect["sentence"].get<std::string>().ends_with(" cm further left than stated.")) << effect["sentence"];
+  const std::string to_write = plain["notes"].back()["text"];
+  write(folder.path() / "to_write.yaml", to_write);
+  const nlohmann::json lines = test::load_yaml_as_json(folder.path() / "to_write.yaml");
+  EXPECT_EQ(lines["imu"]["lever_arm_m"], written["imu"]["lever_arm_m"]) << to_write;
+  EXPECT_EQ(lines["imu"].size(), 1U) << to_write;
 }
 
 TEST(DiagnoseCommand, QuickFindsItWithoutTwinsAndSaysWhatIsLeftOut) {

@@ -91,9 +91,10 @@ struct Effect {
   std::string_view parameter{};  ///< name of the coefficient
   std::string_view unit{};
   std::string_view equation{};
-  std::string_view meaning{};               ///< a sentence for the user
-  /// A sentence of one that was found, in plain words: {size} with its unit and sigma, {axis} (the response, of a pair), {cause},
-  /// and {way}, for which `ways` has a word for positive sizes and one for negative ones, the same for all axes or by axis.
+  std::string_view meaning{};  ///< a sentence for the user
+  /// A sentence of one that was found, in plain words: {size} with its unit and sigma, {axis} (the response, of a pair),
+  /// {cause}, and {way}, for which `ways` has a word for positive sizes and one for negative ones, the same for all axes or by
+  /// axis.
   std::string_view sentence{};
   std::vector<std::array<std::string_view, 2>> ways{};
   std::string_view separating_manoeuvre{};  ///< manoeuvre that would separate it from similar effects
