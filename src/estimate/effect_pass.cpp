@@ -169,10 +169,6 @@ AppliedUpdate silent(AppliedUpdate update) {
   return update;
 }
 
-}  // namespace
-
-namespace {
-
 /// All that the recursion needs of a knot.
 struct PreparedKnot {
   Knot knot;

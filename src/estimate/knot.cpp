@@ -1,5 +1,7 @@
 #include "coast/estimate/knot.hpp"
 
+#include <unistd.h>
+
 #include <algorithm>
 #include <bit>
 
@@ -159,21 +161,33 @@ void KnotStore::clear() {
 void KnotStore::spill() {
   if (!file_) file_.reset(std::tmpfile());
   if (!file_) throw OutputError("temporary file of the smoother", "cannot be opened");
-  std::fseek(file_.get(), 0, SEEK_END);
-  if (std::fwrite(memory_.data(), sizeof(double), memory_.size(), file_.get()) != memory_.size())
-    throw OutputError("temporary file of the smoother", "the disk is full");
+  const bool written = std::fwrite(memory_.data(), sizeof(double), memory_.size(), file_.get()) == memory_.size();
+  if (!written || std::fflush(file_.get()) != 0) throw OutputError("temporary file of the smoother", "the disk is full");
   spilled_ += memory_.size();
   memory_.clear();
 }
+
+namespace {
+
+/// Without a position in the file, which threads would have to share.
+void read_at(int file, std::size_t from, std::vector<double>& values) {
+  auto* const bytes = reinterpret_cast<char*>(values.data());
+  const std::size_t size = values.size() * sizeof(double);
+  for (std::size_t done = 0; done < size;) {
+    const ssize_t got = pread(file, bytes + done, size - done, static_cast<off_t>(from + done));
+    if (got <= 0) throw OutputError("temporary file of the smoother", "cannot be read back");
+    done += static_cast<std::size_t>(got);
+  }
+}
+
+}  // namespace
 
 const double* KnotStore::data(std::size_t index, std::size_t count, std::vector<double>& buffer) const {
   const std::size_t begin = offsets_[index];
   if (begin >= spilled_) return memory_.data() + (begin - spilled_);
   const std::size_t end = index + 1 < offsets_.size() ? offsets_[index + 1] : spilled_ + memory_.size();
   buffer.resize(count > 0 ? std::min(count, end - begin) : end - begin);
-  std::fseek(file_.get(), static_cast<long>(begin * sizeof(double)), SEEK_SET);
-  if (std::fread(buffer.data(), sizeof(double), buffer.size(), file_.get()) != buffer.size())
-    throw OutputError("temporary file of the smoother", "cannot be read back");
+  read_at(fileno(file_.get()), begin * sizeof(double), buffer);
   return buffer.data();
 }
 

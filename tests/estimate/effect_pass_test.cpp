@@ -91,9 +91,9 @@ class EffectPassTest : public testing::Test {
     Eigen::MatrixXd N;
     Eigen::MatrixXd null;
   };
-  AtKnot evidence(geo::GpsTime t0, Eigen::Index draws = 0) const {
+  AtKnot evidence(geo::GpsTime t0, Eigen::Index draws = 0, std::size_t memory_limit_bytes = std::size_t{64} << 20) const {
     AtKnot at;
-    KnotStore knots;
+    KnotStore knots(memory_limit_bytes);
     log_likelihood(Eigen::Vector<double, kCoefficients>::Zero(), t0, &knots,
                    [&](const ForwardFilter& filter, const Mission& mission) {
                      std::mt19937_64 random(5);
@@ -131,6 +131,14 @@ TEST_F(EffectPassTest, ScoreAndInformationAreTheDerivativesOfTheLikelihood) {
     EXPECT_NEAR((above - below) / (2.0 * h) * sigma, -at.r(i) * sigma, 0.02) << i;
     EXPECT_NEAR((2.0 * middle - above - below) / (h * h) * sigma * sigma, 1.0, 0.02) << i;
   }
+}
+
+// Knots of long missions are in a file, from which all threads read.
+TEST_F(EffectPassTest, ReadsSpilledKnotsAsThoseInMemory) {
+  const geo::GpsTime start = test::mission_start();
+  const AtKnot in_memory = evidence(start), spilled = evidence(start, 0, 10000);
+  EXPECT_EQ(in_memory.r, spilled.r);
+  EXPECT_EQ(in_memory.N, spilled.N);
 }
 
 TEST_F(EffectPassTest, CrossInformationIsTheMixedDerivative) {

@@ -57,6 +57,7 @@ class KnotStore {
   /// Removes all knots; the memory is kept for another pass.
   void clear();
   [[nodiscard]] std::size_t size() const { return offsets_.size(); }
+  /// Several threads may read at a time.
   [[nodiscard]] Knot at(std::size_t index) const;
   /// Only the start of the nominal trajectory and the interval; covariance, transition and updates are empty.
   [[nodiscard]] Knot nominal_at(std::size_t index) const;
