@@ -116,7 +116,8 @@ std::optional<Searched> after(const Exchange& exchange, const Searched& before, 
 bool keep_first_likelier(const std::vector<Exchange>& exchanges, Searched& best, Context& context) {
   const Searched before = best;
   before.state.run->complete();
-  const std::size_t width = tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism);
+  constexpr std::size_t kMost = 4;  // each remembers runs of the whole mission
+  const std::size_t width = std::min(kMost, tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism));
   for (std::size_t first = 0; first < exchanges.size(); first += width) {
     const std::size_t count = std::min(width, exchanges.size() - first);
     std::deque<Aside> asides;
