@@ -114,6 +114,7 @@ std::optional<Searched> after(const Exchange& exchange, const Searched& before, 
 
 /// Tries exchanges of one state, several at a time; the first that is likelier is kept. @return  whether there is one
 bool keep_first_likelier(const std::vector<Exchange>& exchanges, Searched& best, Context& context) {
+  if (exchanges.empty()) return false;
   const Searched before = best;
   before.state.run->complete();
   constexpr std::size_t kMost = 4;  // each remembers runs of the whole mission

@@ -83,8 +83,7 @@ EffectPtr unknown_relation(Site site, int axis, const std::string& relation) {
   effect->equation = effect->equation_text;
   effect->unit_text = fmt::format("{} per unit of {}", unit_of(site), relation);
   effect->unit = effect->unit_text;
-  effect->sentence_text = fmt::format("{} {} errs in proportion to {}, by {{size}}; no effect that is known does that.",
-                                      called(site), axis_name, relation);
+  effect->sentence_text = fmt::format("{} {} errs by {{size}}, which no known effect does.", called(site), axis_name);
   effect->sentence = effect->sentence_text;
   effect->meaning = "A relation that the catalogue has no name for.";
   effect->separating_manoeuvre = "Another mission: a relation found by search is believed when it is found again.";

@@ -153,8 +153,8 @@ NoiseFit fit_noise(const Mission& mission, const noise::ImuErrorModel& model, co
   climb(likelihood, box, kNearby, search);
   NoiseFit fit;
   if (choice.precision != FitPrecision::kPreliminary) {
-    const bool is_last = choice.precision == FitPrecision::kSearch;
-    relinearise(likelihood, is_last, search);
+    const bool for_search = choice.precision == FitPrecision::kSearch;
+    relinearise(likelihood, for_search, search);
     climb(likelihood, box, kSettled, search);
     const NoiseAdjustment fitted = objective.at(search.at.theta);
     const ForwardFilter filter(cleaned, adjusted(model, fitted), adjusted(options, fitted));
@@ -163,7 +163,7 @@ NoiseFit fit_noise(const Mission& mission, const noise::ImuErrorModel& model, co
       search.at = point_at(likelihood, search.at.theta);
       climb(likelihood, box, kSettled, search);
     }
-    if (!is_last) polish(likelihood, box, search);
+    if (!for_search) polish(likelihood, box, search);
     describe(objective, parameters, {options.gnss_scale, options.auxiliary.correlated_gnss}, search.at, fit);
   }
   for (const NoiseParameter& p : parameters) fit.names.emplace_back(p.name);

@@ -283,6 +283,10 @@ void PreparedMission::refine_start(const Progress& progress) {
 }
 
 void PreparedMission::restart_behind_gaps() {
+  if (setup_.restarts) {
+    mission_->restarts = *setup_.restarts;
+    return;
+  }
   Setup found = setup_;
   found.time_offset_s = mission_->time_offset_s;
   found.lever_arm_b = mission_->lever_arm_b;

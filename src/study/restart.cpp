@@ -39,6 +39,7 @@ Setup plain(const Setup& setup) {
   own.unstated = {};
   own.start.reset();
   own.start_sensor_errors.resize(0);
+  own.restarts.reset();
   own.noise_fit.reset();
   own.batch.reset();
   own.carrier.reset();

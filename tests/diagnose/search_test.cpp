@@ -133,6 +133,28 @@ TEST(ExplainedRun, SizesAreThoseOfTheWholeCatalogue) {
   EXPECT_LT(first_half.information(0, 0), information(0, 0));
 }
 
+// Alignment behind a gap takes longer than filtering the mission.
+TEST(Runs, KeepRestartsUnlessTheAntennaIsElsewhere) {
+  MissionInput input = test::honest_mission(1, 220.0);
+  const geo::GpsTime start_of_gap = input.imu.samples.front().t + 120.0;
+  std::erase_if(input.imu.samples, [&](const record::ImuSample& s) { return s.t > start_of_gap && s.t < start_of_gap + 3.0; });
+  Searching search(input);
+  const State start = begin(search.context);
+  const std::vector<estimate::Restart>& found = start.run->mission().mission().restarts;
+  ASSERT_FALSE(found.empty());
+  const auto with = [&](const char* name, const char* axis, double value) {
+    return search.context.runs.about(start.explanation.with({.hypothesis = index_of(start, name, axis), .value = value}),
+                                     start.run);
+  };
+  const RunPtr scaled = with("gyro_scale_factor", "z", 1e-3), moved = with("lever_arm_error", "y", 0.2);
+  const auto& kept = scaled->mission().mission().restarts;
+  const auto& anew = moved->mission().mission().restarts;
+  ASSERT_EQ(kept.size(), found.size());
+  ASSERT_FALSE(anew.empty());
+  EXPECT_EQ(kept.back().nav.r_eb_e, found.back().nav.r_eb_e);
+  EXPECT_NEAR((anew.back().nav.r_eb_e - found.back().nav.r_eb_e).norm(), 0.2, 0.05);
+}
+
 // What is likelier by less than a proposal asks for leaves no trace.
 TEST(Proposal, InVainLeavesTheRunThatStands) {
   Searching search(test::honest_mission(1, 220.0));

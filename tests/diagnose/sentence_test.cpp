@@ -13,7 +13,7 @@ Finding of(std::string_view name, Site site, Eigen::Index axis, double value, do
   const auto effect = std::ranges::find_if(catalogue(), [&](const Effect& e) { return e.name == name && e.site == site; });
   EXPECT_NE(effect, catalogue().end()) << name;
   Finding finding;
-  finding.hypothesis = {&*effect, axis, 0.0};
+  finding.hypothesis = {&*effect, axis, 1e3};
   finding.value = value;
   finding.sd = sd;
   return finding;
@@ -46,9 +46,21 @@ TEST(Sentence, SaysSizeAndDirection) {
 TEST(Sentence, SaysWhen) {
   Finding slip = of("gnss_wrong_fix", Site::kGnss, 0, -0.4, 0.02);
   slip.from = geo::GpsTime::from_week(2374, 1234.5);
-  EXPECT_EQ(sentence(slip), "The fixes are 40 +- 2 cm too far south. From 1234.5 s of week on.");
+  EXPECT_EQ(sentence(slip), "The fixes are 40 +- 2 cm too far south, from 1234.5 s of week on.");
   slip.to = geo::GpsTime::from_week(2374, 1300.0);
-  EXPECT_EQ(sentence(slip), "The fixes are 40 +- 2 cm too far south. From 1234.5 to 1300.0 s of week.");
+  EXPECT_EQ(sentence(slip), "The fixes are 40 +- 2 cm too far south, from 1234.5 to 1300.0 s of week.");
+}
+
+TEST(Sentence, SaysWhatIsImplausible) {
+  Finding scale = of("accel_scale_factor", Site::kAccel, 2, 0.544, 0.015);
+  scale.hypothesis.plausible = 0.01;
+  EXPECT_EQ(sentence(scale),
+            "Accelerometer z measures forces 54.4 +- 1.5 % too large. So much is implausible: look for another cause too.");
+  scale.value = 0.29;
+  EXPECT_EQ(sentence(scale), "Accelerometer z measures forces 29.0 +- 1.5 % too large.");
+  Finding arm = of("lever_arm_error", Site::kAntenna, 0, 5.0, 0.1);  // whoever measured it may have read another scale
+  arm.hypothesis.plausible = 0.1;
+  EXPECT_EQ(sentence(arm), "The antenna is 5.00 +- 0.10 m further forward than stated.");
 }
 
 TEST(Sentence, OfEveryEffectIsComplete) {
@@ -101,6 +113,9 @@ TEST(Sentence, TellsTheGainOfOutages) {
   EXPECT_EQ(consequence(d), "With all of this corrected, outages of 20 s drift 0.51 m and not 0.74 m.");
   d.outage_change.sd = 0.15;
   EXPECT_EQ(consequence(d), "With all of this corrected, outages of 20 s drift 0.51 m, before 0.74 m: within chance the same.");
+  d.after.outage_rms_m = 0.9;
+  d.outage_change = {.count = 9, .mean = 0.2, .sd = 0.05};
+  EXPECT_EQ(consequence(d), "With all of this corrected, outages of 20 s drift 0.90 m and not 0.74 m: farther.");
 }
 
 }  // namespace

@@ -157,7 +157,8 @@ TEST(NoiseFit, EndsAtTheSameOptimumFromAnyStart) {
   for (const NoiseAdjustment& from : {far, other}) expect_same(first, mission.fit(from), 2e-3);
 }
 
-// What a search of effects compares is likelihoods; its thresholds are some units of their logarithm.
+// What a search of effects compares is likelihoods; its thresholds are some units of their logarithm. A promised gain of a
+// thousandth ends the fit: sqrt(0.002) sigmas along any direction. Passes: 24 and 58.
 TEST(NoiseFit, ForASearchEndsNearTheOptimumInFewerPasses) {
   const AllFree mission;
   const NoiseAdjustment start = starting_point({}, AllFree::kAll);

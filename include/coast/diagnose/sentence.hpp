@@ -8,15 +8,16 @@
 namespace coast::diagnose {
 
 /// Size and sigma in the unit that the field uses for it: centimetres, milliseconds, deg/h, mg, .. Digits end with the second
-/// one of the sigma if its first is 1, otherwise with the first. @param sd  0: unknown
+/// one of the sigma if its first is 1, otherwise with the first. @param sd  0: unknown, three digits
 [[nodiscard]] std::string plain_size(double value, double sd, std::string_view unit, Site site);
 
-/// "The antenna is 28 +- 1 cm further right than stated.", with the time if it begins at some time.
+/// "The antenna is 28 +- 1 cm further right than stated.", with the time if it begins at some time, and a second sentence if an
+/// IMU of this grade hardly errs so much (thirty times what is usual).
 [[nodiscard]] std::string sentence(const Finding& finding);
 /// Likewise, of noise and converters.
 [[nodiscard]] std::string sentence(const NoiseFinding& finding);
-/// What is gained by all findings together: the drift of outages with and without them. Empty if the mission has no outages or
-/// nothing was found.
+/// What is gained by all findings together: the drift of outages with and without them, and whether the paired differences
+/// show more than chance (two sigmas). Empty if the mission has no two outages, or if nothing was found.
 [[nodiscard]] std::string consequence(const Diagnosis& diagnosis);
 
 }  // namespace coast::diagnose

@@ -27,7 +27,7 @@ struct MeasurementView {
 };
 
 /// Hypotheses (effects), each with an unknown coefficient: the error in the measured values per unit coefficient. Error =
-/// measured - true.
+/// measured - true. A pass asks from several threads at a time.
 class Effects {
  public:
   Effects() = default;
@@ -73,7 +73,8 @@ struct EffectPassOptions {
 
 /// Processes the knots from the last to the first; `visit` is called at each with the evidence of its own and all later
 /// updates. The nominal trajectory is recomputed from every knot; effects are linearised about it. The cost is some products of
-/// n x p and 9 x p x p per knot and 20 flops per coefficient and sample; nothing is allocated per sample.
+/// n x p and 9 x p x p per knot and 20 flops per coefficient and sample; nothing is allocated per sample. Columns of the knots
+/// are computed on all threads, `visit` and `draw` are called in order by one at a time.
 /// @param knots  of a forward pass of the same mission and layout, without carrier slots
 void effect_pass(const Mission& mission, const StateLayout& layout, const KnotStore& knots, const Effects& effects,
                  const EffectPassOptions& options, const std::function<void(const Evidence&)>& visit);

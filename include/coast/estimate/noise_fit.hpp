@@ -17,10 +17,10 @@ struct NoiseAdjustment {
   double accel_factor = 1.0;  ///< on the accelerometer's
 };
 
-/// How far a fit goes. Its cost in passes, with n parameters: about 8, 20 + 2 n, 40 + 6 n.
+/// How far a fit goes. Its cost with eight parameters: about 10, 20 to 40, 60 and more passes of the filter.
 enum class FitPrecision {
   kPreliminary,  ///< to a tenth of a sigma, without log_sd and a second round
-  kSearch,       ///< to a hundredth of a sigma or so: steps of a search that compares likelihoods of whole runs
+  kSearch,       ///< to a twentieth of a sigma: steps of a search that compares likelihoods of whole runs
   kOptimum,      ///< to a thousandth of a sigma
 };
 

@@ -52,6 +52,8 @@ struct Setup {
   std::optional<ins::InitialState> start;  ///< if given; otherwise found by alignment
   /// Sensor states of a given start, in the order of the layout; empty: from the alignment.
   Eigen::VectorXd start_sensor_errors;
+  /// Behind long gaps of the IMU, if given; otherwise each is found as the start is, which takes longer than filtering.
+  std::optional<std::vector<estimate::Restart>> restarts;
   int start_rounds = 4;  ///< maximum number of refinements of a start found by alignment
   /// Start of the first studied outage: the start is refined only with fixes before it, so that outage results are not too
   /// optimistic.

@@ -7,11 +7,12 @@ namespace coast::diagnose {
 
 inline constexpr double kEpisode = 10.0;  // s; closer onsets are hardly different hypotheses
 
-/// Whether an effect of thirty times its plausible size exceeds its standard deviation: plausible sizes are known to an
-/// order of magnitude or two.
+/// Times the plausible size: plausible sizes are known to an order of magnitude or two.
+inline constexpr double kImplausible = 30.0;
+
+/// Whether the largest effect that is not implausible exceeds its standard deviation.
 [[nodiscard]] inline bool is_observable(const Hypothesis& h, double information) {
-  constexpr double kFactor = 30.0;
-  const double largest = kFactor * h.plausible;
+  const double largest = kImplausible * h.plausible;
   return information * largest * largest >= 1.0;
 }
 

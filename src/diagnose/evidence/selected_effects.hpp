@@ -32,7 +32,7 @@ class WithSelected : public estimate::Effects {
   std::vector<SelectedEffect> selected_;  ///< by their numbers in `hypotheses_`
 };
 
-/// Selected effects alone. A pass over a mission costs what its columns cost: a tenth of that with the whole catalogue.
+/// Selected effects alone: a pass over a mission costs what their columns cost, not what the catalogue's do.
 class SelectedAlone {
  public:
   /// @param all  must outlive it

@@ -38,6 +38,12 @@ void forget_standstill(const TurnOn& bias, study::Setup& setup) {
   setup.start->gyro_bias_sd.reset();
 }
 
+/// Restarts behind gaps are found once, as the start is, unless the antenna is elsewhere at the time of a fix.
+void keep_restarts(const MissionRun& other, study::Setup& setup) {
+  if (setup.lever_arm_b == other.mission().lever_arm_b && setup.time_offset_s == other.mission().time_offset_s)
+    setup.restarts = other.mission().restarts;
+}
+
 std::size_t key_of(const Explanation& explanation, const ExplainedRun& other) {
   return combined(other.key(), explanation.hash());
 }
@@ -124,6 +130,7 @@ RunPtr Runs::make(const Explanation& explanation, const ExplainedRun& other) {
   MissionInput input = explained(explanation, other.mission());
   loosen_start(other.mission().prepared(), other.mission().solution().smoothed.front(), input);
   for (const TurnOn& bias : explanation.shared) forget_standstill(bias, input.setup);
+  keep_restarts(other.mission(), input.setup);
   SensorsAtStart sensors = sensors_for(explanation, input, other);
   input.setup.start_sensor_errors = sensor_states_in(layout_of(input), sensors.layout, sensors.x);
   ++made_;
@@ -205,6 +212,7 @@ MissionInput Runs::with_sizes(const std::vector<SelectedEffect>& effects, const 
   MissionInput input = explained(other, run.mission());
   input.setup.start = run.input().setup.start;
   input.setup.start_sensor_errors = run.input().setup.start_sensor_errors;
+  keep_restarts(run.mission(), input.setup);
   return input;
 }
 

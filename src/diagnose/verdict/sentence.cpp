@@ -5,9 +5,11 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
+#include <optional>
 
-#include "coast/geo/earth.hpp"
 #include "coast/geo/units.hpp"
+#include "evidence/observable.hpp"
 
 namespace coast::diagnose {
 
@@ -70,10 +72,16 @@ std::string_view axis_word(std::string_view axis) {
   return axis == "sin" ? "sine" : axis;
 }
 
+/// As the end of a sentence.
 std::string when(const Finding& f) {
-  if (!f.from) return {};
-  if (f.to) return fmt::format(" From {:.1f} to {:.1f} s of week.", f.from->sow(), f.to->sow());
-  return fmt::format(" From {:.1f} s of week on.", f.from->sow());
+  if (!f.from) return ".";
+  if (f.to) return fmt::format(", from {:.1f} to {:.1f} s of week.", f.from->sow(), f.to->sow());
+  return fmt::format(", from {:.1f} s of week on.", f.from->sow());
+}
+
+std::string_view without_stop(std::string_view sentence) {
+  if (sentence.ends_with('.')) sentence.remove_suffix(1);
+  return sentence;
 }
 
 std::string_view fix_errors(std::string_view axis) {
@@ -88,18 +96,27 @@ std::string plain_size(double value, double sd, std::string_view unit, Site site
   };
   const auto* const plain = std::ranges::find_if(kPlain, fits);
   const double factor = plain != kPlain.end() ? plain->factor : 1.0;
-  const std::string_view said = plain != kPlain.end() ? plain->said : (unit == "1" ? std::string_view() : unit);
   const int digits = decimals(factor * value, factor * sd);
   std::string text = fmt::format("{:.{}f}", factor * value, digits);
   if (sd > 0.0) text += fmt::format(" +- {:.{}f}", factor * sd, digits);
-  return said.empty() ? text : fmt::format("{} {}", text, said);
+  return fmt::format("{} {}", text, plain != kPlain.end() ? plain->said : unit);
 }
+
+namespace {
+
+/// Of an IMU of this grade; how far an antenna or a clock may be off depends on who has set it up.
+bool is_implausible(const Finding& f) {
+  const Site site = f.hypothesis.effect->site;
+  return (site == Site::kGyro || site == Site::kAccel) && std::abs(f.value) > kImplausible * f.hypothesis.plausible;
+}
+
+}  // namespace
 
 std::string sentence(const Finding& f) {
   const Effect& effect = *f.hypothesis.effect;
   const std::string_view axis = f.hypothesis.axis_name();
   const bool is_pair = axis.size() == 2;
-  std::string text(effect.sentence);
+  std::string text(without_stop(effect.sentence));
   double value = f.value;
   if (!effect.ways.empty()) {
     const auto of_axis = static_cast<std::size_t>(f.hypothesis.axis);
@@ -109,7 +126,9 @@ std::string sentence(const Finding& f) {
   replace(text, "{size}", plain_size(value, f.sd, effect.unit, effect.site));
   replace(text, "{axis}", is_pair ? axis.substr(0, 1) : axis_word(axis));
   replace(text, "{cause}", is_pair ? axis.substr(1) : axis);
-  return text + when(f);
+  text += when(f);
+  if (is_implausible(f)) text += " So much is implausible: look for another cause too.";
+  return text;
 }
 
 std::string sentence(const NoiseFinding& f) {
@@ -122,11 +141,9 @@ std::string sentence(const NoiseFinding& f) {
     return fmt::format("The noise of the {} is {:.2g} times what is stated.", f.sensor == "gyro" ? "gyros" : "accelerometers",
                        f.value);
   const Site site = f.sensor == "gyro" ? Site::kGyro : Site::kAccel;
-  std::string_view meaning = f.meaning;
-  if (meaning.ends_with('.')) meaning.remove_suffix(1);
   const std::string time = f.time_s > 0.0 ? fmt::format(" over about {:.2g} s", f.time_s) : std::string();
-  return fmt::format("{} {}: {} ({} {}{}).", f.sensor == "gyro" ? "Gyro" : "Accelerometer", f.axis, meaning, f.parameter,
-                     plain_size(f.value, f.sd, f.unit, site), time);
+  return fmt::format("{} {}: {} ({} {}{}).", f.sensor == "gyro" ? "Gyro" : "Accelerometer", f.axis, without_stop(f.meaning),
+                     f.parameter, plain_size(f.value, f.sd, f.unit, site), time);
 }
 
 std::string consequence(const Diagnosis& d) {
@@ -135,10 +152,10 @@ std::string consequence(const Diagnosis& d) {
   const double before = d.before.outage_rms_m;
   const double after = d.after.outage_rms_m;
   const auto metres = [](double m) { return fmt::format("{:.{}f} m", m, m < 1.0 ? 2 : 1); };
-  if (after < before && d.outage_change.mean < -kByChance * d.outage_change.sd)
-    return fmt::format("With all of this corrected, outages of 20 s drift {} and not {}.", metres(after), metres(before));
-  return fmt::format("With all of this corrected, outages of 20 s drift {}, before {}: within chance the same.", metres(after),
-                     metres(before));
+  const std::string drift = fmt::format("With all of this corrected, outages of 20 s drift {}", metres(after));
+  if (!(std::abs(d.outage_change.mean) > kByChance * d.outage_change.sd))
+    return fmt::format("{}, before {}: within chance the same.", drift, metres(before));
+  return fmt::format("{} and not {}{}", drift, metres(before), d.outage_change.mean < 0.0 ? "." : ": farther.");
 }
 
 }  // namespace coast::diagnose

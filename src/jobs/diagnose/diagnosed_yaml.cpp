@@ -44,7 +44,7 @@ bool stated_by_key(const diagnose::Finding& f) {
   return f.hypothesis.effect->key && !f.from && !f.to;
 }
 
-/// A changed line of the run file.
+/// A changed line of the run file. Its views are of literals.
 struct Line {
   std::string_view section;
   std::string_view key;
@@ -63,7 +63,6 @@ std::string noise_of_gnss(const study::Setup& setup) {
 std::vector<Line> lines(const diagnose::Diagnosis& d, const std::string& error_model) {
   std::vector<Line> all;
   if (changes_error_model(d)) all = {{"imu", "error_model", error_model}, {"imu", "noise", "stated"}};
-  // Names of keys are literals.
   for (const diagnose::RunKey& key : keys_found(d)) all.push_back({key.section, key.name, key.text(d.modelled.setup)});
   if (std::ranges::any_of(d.noise, [](const diagnose::NoiseFinding& f) { return f.sensor == "gnss"; }))
     all.push_back({"gnss", "noise", noise_of_gnss(d.modelled.setup)});

@@ -62,13 +62,13 @@ std::string when(const diagnose::Finding& f) {
   return f.to ? fmt::format("{} to {:.1f}", begin, f.to->sow()) : fmt::format("from {}", begin);
 }
 
-/// How sure the name of a finding is.
+/// How sure the name of a finding is, if others come near it.
 std::string certainty(const std::vector<diagnose::Alternative>& alternatives) {
-  if (alternatives.empty()) return "Nothing else that is known explains it.";
+  if (alternatives.empty()) return {};
   const diagnose::Alternative& first = alternatives.front();
   const std::string name = fmt::format("{} {}{}{}", first.name, first.sensor, first.axis.empty() ? "" : " ", first.axis);
   if (first.log_odds < 0.7)  // two to one
-    return fmt::format("{} explains it as well: which of the two it is this recording does not tell.", name);
+    return fmt::format("It may as well be {}: this recording does not tell them apart.", name);
   return fmt::format("Less likely, but possible: {}.", name);
 }
 
@@ -99,8 +99,10 @@ report::Section plain_section(const Diagnosis& d, const std::string& changed) {
   report::Section section;
   section.id = "plain";
   section.title = "In plain words";
+  constexpr const char* kAlone = "No other known effect is a thousandth as likely.";
   for (const diagnose::Finding& f : d.findings)
-    section.notes.push_back({report::Note::Kind::kWarning, diagnose::sentence(f), certainty(f.alternatives)});
+    section.notes.push_back(
+        {report::Note::Kind::kWarning, diagnose::sentence(f), f.alternatives.empty() ? kAlone : certainty(f.alternatives)});
   for (const diagnose::NoiseFinding& f : d.noise)
     section.notes.push_back({report::Note::Kind::kWarning, diagnose::sentence(f), certainty(f.alternatives)});
   section.lead = diagnose::consequence(d);
