@@ -202,6 +202,37 @@ TEST(DiagnosisJson, SaysWhyAnEffectWasGivenUp) {
   EXPECT_NE(rejected[1].at("reason").get<std::string>().find("outages"), std::string::npos);
 }
 
+// One entry for people, every time for machines and in the run file.
+TEST(DiagnosisJson, HasEachTimeOfWhatHappenedOften) {
+  DiagnosisResult result;
+  result.end = geo::GpsTime::from_week(2374, 2000.0);
+  diagnose::Diagnosis& diagnosis = result.diagnosis;
+  diagnosis.runs = 1;
+  const auto effect = std::ranges::find(diagnose::catalogue(), "gnss_wrong_fix", &diagnose::Effect::name);
+  const auto fix = [&](Eigen::Index axis, double value, double second) {
+    diagnose::Finding f;
+    f.hypothesis = {&*effect, axis, 0.5};
+    f.from = geo::GpsTime::from_week(2374, second);
+    f.value = value;
+    f.sd = 0.01;
+    return f;
+  };
+  diagnosis.findings = {fix(0, 0.14, 1300.0)};
+  diagnosis.findings[0].further = {fix(2, -0.08, 1100.0)};
+  const auto written = nlohmann::json::parse(diagnosis_json(result));
+  test::expect_valid("diagnosis", written);
+  ASSERT_EQ(written.at("effects").size(), 1U);
+  const nlohmann::json& times = written.at("effects")[0].at("times");
+  ASSERT_EQ(times.size(), 2U);
+  EXPECT_EQ(times[0].at("axis"), "d");
+  EXPECT_EQ(times[0].at("t_start_s"), 1100.0);
+  EXPECT_EQ(times[1].at("value"), 0.14);
+  EXPECT_EQ(times[1].at("t_end_s"), 2000.0);
+  const std::string yaml = diagnosed_yaml("", diagnosis, "");
+  EXPECT_NE(yaml.find("axis: n, start_s: 1300.000000, value: 0.14"), std::string::npos) << yaml;
+  EXPECT_NE(yaml.find("axis: d, start_s: 1100.000000, value: -0.08"), std::string::npos) << yaml;
+}
+
 struct SpoiledEffect {
   const char* what;
   const char* entry;    ///< of `effects:`

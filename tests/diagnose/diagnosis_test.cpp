@@ -210,9 +210,9 @@ TEST(Diagnosis, AWrongFixIsFoundWithBothItsEnds) {
   for (record::GnssFix& fix : input.gnss.fixes)
     if (fix.t >= from && fix.t < from + 30.0) fix.r_ea_e += Eigen::Vector3d(0.0, 0.0, 0.4);  // up and north here
   const Diagnosis d = diagnose::diagnose(input, kWithoutTwins, {});
-  ASSERT_FALSE(d.findings.empty());
-  for (const Finding& f : d.findings) {
-    EXPECT_EQ(f.hypothesis.effect->name, "gnss_wrong_fix") << names(d);
+  ASSERT_EQ(d.findings.size(), 1U) << names(d);
+  EXPECT_EQ(d.findings[0].hypothesis.effect->name, "gnss_wrong_fix") << names(d);
+  for (const Finding& f : times_of(d.findings[0])) {
     ASSERT_TRUE(f.from && f.to) << names(d);
     EXPECT_NEAR(*f.from - from, 0.0, 1.0);
     EXPECT_NEAR(*f.to - from, 30.0, 1.0);

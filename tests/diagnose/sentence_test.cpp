@@ -51,6 +51,23 @@ TEST(Sentence, SaysWhen) {
   EXPECT_EQ(sentence(slip), "The fixes are 40 +- 2 cm too far south, from 1234.5 to 1300.0 s of week.");
 }
 
+TEST(Sentence, SaysHowOften) {
+  const auto fix = [](Eigen::Index axis, double value, double second) {
+    Finding f = of("gnss_wrong_fix", Site::kGnss, axis, value, 0.01);
+    f.from = geo::GpsTime::from_week(2374, second);
+    return f;
+  };
+  Finding all = fix(0, 0.14, 1000.0);
+  all.further = {fix(1, -0.20, 1300.0), fix(2, 0.10, 1000.4)};
+  EXPECT_EQ(sentence(all), "The fixes jump 2 times, by up to 20.0 +- 1.0 cm.");  // components of one jump count once
+  all.further.erase(all.further.begin());
+  EXPECT_EQ(sentence(all), "The fixes jump once, by up to 14.0 +- 1.0 cm.");
+  const std::vector<Finding> times = times_of(all);
+  ASSERT_EQ(times.size(), 2U);
+  EXPECT_EQ(sentence_of_one(times[1]), "The fixes are 10.0 +- 1.0 cm too far down, from 1000.4 s of week on.");
+  EXPECT_TRUE(times[0].further.empty());
+}
+
 TEST(Sentence, SaysWhatIsImplausible) {
   Finding scale = of("accel_scale_factor", Site::kAccel, 2, 0.544, 0.015);
   scale.hypothesis.plausible = 0.01;

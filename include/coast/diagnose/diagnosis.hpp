@@ -35,7 +35,11 @@ struct Finding {
   std::optional<double> held_out_gain;
   std::vector<Alternative> alternatives;
   std::optional<double> stability;  ///< for an unnamed relation: share of random halves of the mission in which it is detected
+  /// Of an effect that repeats: the other times, each with its axis and size, and with no larger gain.
+  std::vector<Finding> further = {};
 };
+/// A finding time by time, in their order; the finding alone if it has no further times.
+[[nodiscard]] std::vector<Finding> times_of(const Finding& finding);
 
 /// Smallest detectable size of an effect that was not detected.
 struct Detectable {

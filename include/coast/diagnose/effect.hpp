@@ -97,6 +97,9 @@ struct Effect {
   /// axis.
   std::string_view sentence{};
   std::vector<std::array<std::string_view, 2>> ways{};
+  /// Of an effect that may begin many times in a mission, which all together are one finding: a sentence with {times}
+  /// ("3 times") and the largest {size}.
+  std::string_view sentence_of_many{};
   std::string_view separating_manoeuvre{};  ///< manoeuvre that would separate it from similar effects
   std::string_view source{};
   std::vector<std::string> axes{};  ///< "x", or "zy": response z, cause y; "" where there is only one
@@ -116,6 +119,7 @@ struct Effect {
   std::optional<RunKey> key = {};  ///< key of the run file that states the effect, if there is one
   std::vector<FixedParameter> fixed = {};
   std::string_view relation{};  ///< for an unnamed effect: its product of signals
+  [[nodiscard]] bool repeats() const { return !sentence_of_many.empty(); }
 };
 
 /// Every effect. A new one is a file in src/diagnose/effects and a line in catalogue.cpp.

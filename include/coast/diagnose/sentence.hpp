@@ -11,8 +11,11 @@ namespace coast::diagnose {
 /// one of the sigma if its first is 1, otherwise with the first. @param sd  0: unknown, three digits
 [[nodiscard]] std::string plain_size(double value, double sd, std::string_view unit, Site site);
 
+/// Of one time of an effect that repeats, as of any other finding.
+[[nodiscard]] std::string sentence_of_one(const Finding& finding);
 /// "The antenna is 28 +- 1 cm further right than stated.", with the time if it begins at some time, and a second sentence if an
-/// IMU of this grade hardly errs so much (thirty times what is usual).
+/// IMU of this grade hardly errs so much (thirty times what is usual). Of an effect that happened several times: how often, and
+/// the largest size.
 [[nodiscard]] std::string sentence(const Finding& finding);
 /// Likewise, of noise and converters.
 [[nodiscard]] std::string sentence(const NoiseFinding& finding);

@@ -16,6 +16,12 @@ namespace {
 constexpr double kLinear = 0.1;  // fraction of a large effect's gain by which its score may be wrong
 constexpr std::size_t kMostByRuns = 3;
 
+/// What happened some times in a mission is likelier to happen once more than what did not. Rates with Jeffreys' prior:
+/// expected are n + 1/2 more, against 1/2.
+double log_odds_of_another(std::ptrdiff_t times) {
+  return std::log(2.0 * static_cast<double>(times) + 1.0);
+}
+
 }  // namespace
 
 double evidence_of(const Suspicion& s, const State& state) {
@@ -33,20 +39,32 @@ Candidates::Candidates(const State& state, Context& context) : state_(&state), c
   if (all_.size() > kMostByRuns) all_.resize(kMostByRuns);
 }
 
+std::vector<Suspicion> Candidates::possible(const std::vector<Suspicion>& suspicions) const {
+  std::vector<Suspicion> all;
+  for (const Suspicion& s : suspicions) {
+    if (state_->excluded.excludes(s.hypothesis)) continue;
+    all.push_back(s);
+    const Effect* const effect = state_->run->hypotheses()[s.hypothesis].effect;
+    const auto is_same = [effect](const Finding& f) { return f.hypothesis.effect == effect; };
+    if (effect->repeats())
+      all.back().log_bayes += log_odds_of_another(std::ranges::count_if(state_->account.findings, is_same));
+  }
+  return all;
+}
+
 void Candidates::find() {
   const Suspicions& suspicions = state_->seen.suspicions;
   const double false_alarm = context_->false_alarm_of_catalogue();
-  for (const Suspicion& s : suspicions.all)
-    if (!state_->excluded.excludes(s.hypothesis) && s.p_value < false_alarm) all_.push_back({s});
+  for (const Suspicion& s : possible(suspicions.all))
+    if (s.p_value < false_alarm) all_.push_back({s});
   // No plausible effect explains the remainder: use implausible ones, if they are likelier nevertheless.
   if (!all_.empty()) return;
-  for (const Suspicion& s : suspicions.implausible)
-    if (!state_->excluded.excludes(s.hypothesis) && evidence_of(s, *state_) > kLogOdds) all_.push_back({s});
+  for (const Suspicion& s : possible(suspicions.implausible))
+    if (evidence_of(s, *state_) > kLogOdds) all_.push_back({s});
 }
 
 void Candidates::bound() {
-  for (const Suspicion& s : state_->seen.suspicions.all) {
-    if (state_->excluded.excludes(s.hypothesis)) continue;
+  for (const Suspicion& s : possible(state_->seen.suspicions.all)) {
     gain_ = std::max(gain_, 0.5 * s.likelihood_ratio);
     evidence_ = std::max(evidence_, evidence_of(s, *state_));
   }

@@ -41,6 +41,8 @@ class Candidates {
   [[nodiscard]] std::optional<double> gained_by_runs(Eigen::Index hypothesis) const;
 
  private:
+  /// Those that may be selected, with the odds of what happened before.
+  [[nodiscard]] std::vector<Suspicion> possible(const std::vector<Suspicion>& suspicions) const;
   void find();
   void bound();
   void run_all();

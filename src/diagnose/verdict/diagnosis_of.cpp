@@ -64,6 +64,7 @@ Diagnosis diagnosis_of(const State& state, const Context& context, const Baselin
   join_quadratures(result.findings, result.suggested);
   forget_found(result);
   std::ranges::stable_sort(result.findings, std::ranges::greater{}, &Finding::delta_log_likelihood);
+  join_times(result.findings);
   const std::vector<EffectPtr>& suggested = state.explanation.suggested;
   result.suggested.insert(result.suggested.end(), suggested.begin(), suggested.end());
   result.before = before.fit;

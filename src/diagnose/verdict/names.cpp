@@ -104,6 +104,25 @@ void join_entries_with_exits(std::vector<Finding>& all) {
     }
 }
 
+void join_times(std::vector<Finding>& all) {
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    if (!all[i].hypothesis.effect->repeats()) continue;
+    const auto is_same = [&](const Finding& f) { return f.hypothesis.effect == all[i].hypothesis.effect; };
+    const auto later = all.begin() + static_cast<std::ptrdiff_t>(i) + 1;
+    const auto others = std::stable_partition(later, all.end(), [&](const Finding& f) { return !is_same(f); });
+    all[i].further.assign(std::make_move_iterator(others), std::make_move_iterator(all.end()));
+    all.erase(others, all.end());
+  }
+}
+
+std::vector<Finding> times_of(const Finding& finding) {
+  std::vector<Finding> all = finding.further;
+  all.push_back(finding);
+  all.back().further.clear();
+  std::ranges::sort(all, {}, &Finding::from);
+  return all;
+}
+
 void join_quadratures(std::vector<Finding>& all, std::vector<EffectPtr>& suggested) {
   for (std::size_t i = 0; i < all.size(); ++i) {
     const Hypothesis h = all[i].hypothesis;

@@ -12,6 +12,10 @@ void name_relations(const State& state, std::vector<Finding>& findings);
 /// An effect cancelled later by an equal jump of opposite sign lasted until then: a wrong fix.
 void join_entries_with_exits(std::vector<Finding>& findings);
 
+/// All times of an effect that repeats are one finding: the first one, with the others as its further times.
+/// @param findings  in order of decreasing gain
+void join_times(std::vector<Finding>& findings);
+
 /// Converts sine and cosine to amplitude and phase. The effects for these are appended to `suggested`.
 void join_quadratures(std::vector<Finding>& findings, std::vector<EffectPtr>& suggested);
 

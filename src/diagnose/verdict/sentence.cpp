@@ -112,7 +112,7 @@ bool is_implausible(const Finding& f) {
 
 }  // namespace
 
-std::string sentence(const Finding& f) {
+std::string sentence_of_one(const Finding& f) {
   const Effect& effect = *f.hypothesis.effect;
   const std::string_view axis = f.hypothesis.axis_name();
   const bool is_pair = axis.size() == 2;
@@ -128,6 +128,30 @@ std::string sentence(const Finding& f) {
   replace(text, "{cause}", is_pair ? axis.substr(1) : axis);
   text += when(f);
   if (is_implausible(f)) text += " So much is implausible: look for another cause too.";
+  return text;
+}
+
+namespace {
+
+/// "3 times". Components of one jump begin at the same time.
+std::string how_often(const std::vector<Finding>& times) {
+  constexpr double kSame = 1.0;  // s
+  int count = 1;
+  for (std::size_t i = 1; i < times.size(); ++i)
+    if (*times[i].from - *times[i - 1].from > kSame) ++count;
+  return count == 1 ? "once" : fmt::format("{} times", count);
+}
+
+}  // namespace
+
+std::string sentence(const Finding& f) {
+  if (f.further.empty()) return sentence_of_one(f);
+  const std::vector<Finding> times = times_of(f);
+  const Finding& largest = *std::ranges::max_element(times, {}, [](const Finding& one) { return std::abs(one.value); });
+  const Effect& effect = *f.hypothesis.effect;
+  std::string text(effect.sentence_of_many);
+  replace(text, "{times}", how_often(times));
+  replace(text, "{size}", plain_size(std::abs(largest.value), largest.sd, effect.unit, effect.site));
   return text;
 }
 

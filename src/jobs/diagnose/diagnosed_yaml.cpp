@@ -73,7 +73,8 @@ std::vector<Line> lines(const diagnose::Diagnosis& d, const std::string& error_m
 std::string effect_entries(const diagnose::Diagnosis& d) {
   std::string entries;
   for (const diagnose::Finding& f : d.findings)
-    if (!stated_by_key(f)) entries += entry(f);
+    if (!stated_by_key(f))
+      for (const diagnose::Finding& one : diagnose::times_of(f)) entries += entry(one);
   for (const diagnose::NoiseFinding& f : d.noise)
     if (f.place == diagnose::NoiseFinding::Place::kEffects)
       entries += fmt::format("  - {{name: {}, sensor: {}, axis: {}, value: {:.17g}}}  # +- {:.2g} {}\n", f.name, f.sensor,

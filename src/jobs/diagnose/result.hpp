@@ -40,7 +40,7 @@ inline constexpr std::string_view kQuick =
 [[nodiscard]] report::Section twin_section(const diagnose::Diagnosis& diagnosis,
                                            const std::optional<SimulationCheck>& simulation);
 /// Name and axis; for noise, the sensor too.
-[[nodiscard]] std::string full_name(const diagnose::Hypothesis& hypothesis);
+[[nodiscard]] std::string full_name(const diagnose::Finding& finding);
 [[nodiscard]] std::string full_name(const diagnose::NoiseFinding& finding);
 /// A sentence on whether the user's own simulation has the finding; empty without simulation.
 [[nodiscard]] std::string_view in_simulation(const diagnose::Finding& finding,

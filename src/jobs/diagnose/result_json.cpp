@@ -45,6 +45,18 @@ std::string other_readings(const std::vector<diagnose::Alternative>& alternative
   return text + fmt::format(". What would tell: {}", separating_manoeuvre);
 }
 
+Json times_json(const diagnose::Finding& f, double end_s) {
+  Json times = Json::array();
+  for (const diagnose::Finding& one : diagnose::times_of(f))
+    times.push_back({{"axis", one.hypothesis.axis_name()},
+                     {"t_start_s", one.from->sow()},
+                     {"t_end_s", one.to ? one.to->sow() : end_s},
+                     {"value", one.value},
+                     {"std", one.sd},
+                     {"delta_log_likelihood", one.delta_log_likelihood}});
+  return times;
+}
+
 Json finding_json(const diagnose::Finding& f, double start_s, double end_s) {
   const diagnose::Effect& effect = *f.hypothesis.effect;
   Json j = hypothesis_json(f.hypothesis);
@@ -59,6 +71,7 @@ Json finding_json(const diagnose::Finding& f, double start_s, double end_s) {
   if (f.held_out_gain) j["held_out_gain"] = *f.held_out_gain;
   j["delta_log_likelihood"] = f.delta_log_likelihood;
   j["p_value"] = f.p_value;
+  if (!f.further.empty()) j["times"] = times_json(f, end_s);
   j["sentence"] = diagnose::sentence(f);
   j["explanation"] = explanation(f);
   j["confounded_with"] = Json::array();
@@ -87,8 +100,9 @@ Json noise_json(const diagnose::NoiseFinding& f, double start_s, double end_s) {
 
 }  // namespace
 
-std::string full_name(const Hypothesis& h) {
-  return fmt::format("{}{}{}", h.effect->name, h.axis_name().empty() ? "" : " ", h.axis_name());
+std::string full_name(const diagnose::Finding& f) {
+  const std::string axis = f.further.empty() ? f.hypothesis.axis_name() : std::string();
+  return fmt::format("{}{}{}", f.hypothesis.effect->name, axis.empty() ? "" : " ", axis);
 }
 
 std::string full_name(const diagnose::NoiseFinding& f) {
@@ -97,8 +111,8 @@ std::string full_name(const diagnose::NoiseFinding& f) {
 
 std::string explanation(const diagnose::Finding& f) {
   const diagnose::Effect& effect = *f.hypothesis.effect;
-  std::string text = fmt::format("{} {}: {} = {:.3g} +- {:.2g} {}.", effect.meaning, effect.equation, effect.parameter, f.value,
-                                 f.sd, effect.unit);
+  std::string text = fmt::format("{} {}: {} = {:.3g} +- {:.2g} {}{}.", effect.meaning, effect.equation, effect.parameter,
+                                 f.value, f.sd, effect.unit, f.further.empty() ? "" : " for the likeliest of them");
   if (f.alternatives.empty()) return text + " No other reading of it was found.";
   return text + other_readings(f.alternatives, effect.separating_manoeuvre);
 }
@@ -138,11 +152,14 @@ std::string_view why_rejected(diagnose::Rejected::Reason reason) {
 bool SimulationCheck::has(const diagnose::Finding& finding) const {
   constexpr double kEqual = 4.0;  // standard deviations of the difference
   const diagnose::Effect& effect = *finding.hypothesis.effect;
-  return std::ranges::any_of(diagnosis.findings, [&](const diagnose::Finding& other) {
+  const auto is_same = [&](const diagnose::Finding& other) {
     const diagnose::Effect& its = *other.hypothesis.effect;
     return its.name == effect.name && its.site == effect.site && its.relation == effect.relation &&
            other.hypothesis.axis_name() == finding.hypothesis.axis_name() &&
            std::abs(other.value - finding.value) < kEqual * std::hypot(other.sd, finding.sd);
+  };
+  return std::ranges::any_of(diagnosis.findings, [&](const diagnose::Finding& other) {
+    return is_same(other) || std::ranges::any_of(other.further, is_same);
   });
 }
 
@@ -235,6 +252,18 @@ std::string_view in_simulation(const diagnose::Finding& finding, const std::opti
   return simulation->has(finding) ? " The simulation has it too." : " The simulation does not have it.";
 }
 
+namespace {
+
+/// A line for each time of a finding that repeats.
+std::string times_text(const diagnose::Finding& f) {
+  std::string text;
+  if (f.further.empty()) return text;
+  for (const diagnose::Finding& one : diagnose::times_of(f)) text += fmt::format("  {}\n", diagnose::sentence_of_one(one));
+  return text;
+}
+
+}  // namespace
+
 std::string diagnosis_text(const DiagnosisResult& result) {
   const diagnose::Diagnosis& d = result.diagnosis;
   const std::optional<SimulationCheck>& simulation = result.simulation;
@@ -242,8 +271,9 @@ std::string diagnosis_text(const DiagnosisResult& result) {
   if (d.findings.empty() && d.noise.empty()) text = "Nothing is missing from the model that this mission could show.\n";
   for (const diagnose::Finding& f : d.findings)
     text +=
-        fmt::format("{} [{}]{}{}\n", diagnose::sentence(f), full_name(f.hypothesis),
-                    other_readings(f.alternatives, f.hypothesis.effect->separating_manoeuvre), in_simulation(f, simulation));
+        fmt::format("{} [{}]{}{}\n", diagnose::sentence(f), full_name(f),
+                    other_readings(f.alternatives, f.hypothesis.effect->separating_manoeuvre), in_simulation(f, simulation)) +
+        times_text(f);
   for (const diagnose::NoiseFinding& f : d.noise)
     text +=
         fmt::format("{} [{}]{}\n", diagnose::sentence(f), full_name(f), other_readings(f.alternatives, f.separating_manoeuvre));
@@ -255,8 +285,7 @@ std::string diagnosis_text(const DiagnosisResult& result) {
   if (simulation)
     for (const diagnose::Finding& f : simulation->diagnosis.findings)
       if (!SimulationCheck{{}, d}.has(f))
-        text += fmt::format("{}, {:.3g} {}: in the simulation alone.\n", full_name(f.hypothesis), f.value,
-                            f.hypothesis.effect->unit);
+        text += fmt::format("{}, {:.3g} {}: in the simulation alone.\n", full_name(f), f.value, f.hypothesis.effect->unit);
   return text;
 }
 

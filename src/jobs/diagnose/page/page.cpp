@@ -83,11 +83,12 @@ report::Table finding_table(const Diagnosis& d) {
       "its size was not estimated from.";
   table.columns = {{"effect", "", false}, {"sensor", "", false}, {"axis", "", false}, {"when, s of week", "", false},
                    {"value", "", false},  {"gain", ""},          {"held out", ""},    {"p", ""}};
-  for (const diagnose::Finding& f : d.findings)
-    table.rows.push_back(cells({std::string(f.hypothesis.effect->name), std::string(diagnose::name(f.hypothesis.effect->site)),
-                                f.hypothesis.axis_name(), when(f), sized(f.value, f.sd, f.hypothesis.effect->unit),
-                                number(f.delta_log_likelihood), f.held_out_gain ? number(*f.held_out_gain) : std::string(),
-                                p_value(f.p_value)}));
+  for (const diagnose::Finding& finding : d.findings)
+    for (const diagnose::Finding& f : diagnose::times_of(finding))
+      table.rows.push_back(cells({std::string(f.hypothesis.effect->name),
+                                  std::string(diagnose::name(f.hypothesis.effect->site)), f.hypothesis.axis_name(), when(f),
+                                  sized(f.value, f.sd, f.hypothesis.effect->unit), number(f.delta_log_likelihood),
+                                  f.held_out_gain ? number(*f.held_out_gain) : std::string(), p_value(f.p_value)}));
   for (const diagnose::NoiseFinding& f : d.noise)
     table.rows.push_back(cells(
         {f.name, f.sensor, f.axis, "", sized(f.value, f.sd, f.unit), number(f.delta_log_likelihood), "", p_value(f.p_value)}));
@@ -122,7 +123,7 @@ report::Section missing_section(const Diagnosis& d, const std::optional<Simulati
   section.lead = "What the recording has and the configured model has not, each with the equation that was missing.";
   for (const diagnose::Finding& f : d.findings)
     section.notes.push_back(
-        {report::Note::Kind::kWarning, full_name(f.hypothesis), explanation(f) + std::string(in_simulation(f, simulation))});
+        {report::Note::Kind::kWarning, full_name(f), explanation(f) + std::string(in_simulation(f, simulation))});
   for (const diagnose::NoiseFinding& f : d.noise)
     section.notes.push_back({report::Note::Kind::kWarning, full_name(f), explanation(f)});
   if (!d.noise.empty())
