@@ -12,6 +12,7 @@
 #include "search/moves/moves.hpp"
 #include "search/review.hpp"
 #include "search/search.hpp"
+#include "search/told.hpp"
 #include "verdict/detectable.hpp"
 #include "verdict/held_out.hpp"
 
@@ -153,6 +154,37 @@ TEST(Runs, KeepRestartsUnlessTheAntennaIsElsewhere) {
   ASSERT_FALSE(anew.empty());
   EXPECT_EQ(kept.back().nav.r_eb_e, found.back().nav.r_eb_e);
   EXPECT_NEAR((anew.back().nav.r_eb_e - found.back().nav.r_eb_e).norm(), 0.2, 0.05);
+}
+
+// A signal that explains as much as the noise does is told beside it, and that a sensor hardly has so much of it.
+TEST(Told, NoiseHidesNoImplausibleEffect) {
+  Searching search(test::honest_mission(1, 220.0));
+  State state = begin(search.context);
+  const Eigen::Index scale = index_of(state, "accel_scale_factor", "x");
+  const Hypothesis& h = state.run->hypotheses()[scale];
+  const auto of_size = [&](double estimate, double ratio) {
+    return Suspicion{.hypothesis = scale,
+                     .from = {},
+                     .estimate = estimate,
+                     .sd = estimate / std::sqrt(ratio),
+                     .likelihood_ratio = ratio,
+                     .log_bayes = 0.5 * ratio - 8.0};
+  };
+  const auto& noise = noise_catalogue();
+  const FittedEffect fit{.noise = {.effect = &noise.front(), .axis = 0, .root = 1e-3}, .log_sd = 0.1, .gain = 60.0};
+  state.seen.suspicions.implausible = {of_size(100.0 * h.plausible, 130.0)};
+  const NoiseFinding told = noise_finding_of({fit}, 1e-6, state);
+  ASSERT_EQ(told.alternatives.size(), 1U);
+  EXPECT_EQ(told.alternatives[0].name, "accel_scale_factor");
+  EXPECT_TRUE(told.alternatives[0].implausible);
+  EXPECT_GE(told.alternatives[0].log_odds, -5.0);  // by the data: 60 against 65; the prices of both
+  EXPECT_LT(told.alternatives[0].log_odds, 0.0);
+  state.seen.suspicions.implausible = {of_size(100.0 * h.plausible, 60.0)};
+  EXPECT_TRUE(noise_finding_of({fit}, 1e-6, state).alternatives.empty());
+  state.seen.suspicions.implausible.clear();
+  state.seen.suspicions.all = {of_size(2.0 * h.plausible, 130.0)};
+  ASSERT_EQ(noise_finding_of({fit}, 1e-6, state).alternatives.size(), 1U);
+  EXPECT_FALSE(noise_finding_of({fit}, 1e-6, state).alternatives[0].implausible);
 }
 
 // What is likelier by less than a proposal asks for leaves no trace.

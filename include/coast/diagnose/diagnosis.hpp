@@ -17,7 +17,8 @@ struct Alternative {
   std::string name;
   std::string sensor;
   std::string axis;
-  double log_odds = 0.0;  ///< natural logarithm of the odds of the detected effect against this one
+  double log_odds = 0.0;     ///< natural logarithm of the odds of the detected effect against this one
+  bool implausible = false;  ///< of a size that a sensor of this grade hardly has
 };
 
 /// A detected effect.

@@ -1,6 +1,8 @@
 #pragma once
 // Observability of effects in a mission; private to the room.
 
+#include <cmath>
+
 #include "coast/diagnose/hypotheses.hpp"
 
 namespace coast::diagnose {
@@ -14,6 +16,12 @@ inline constexpr double kImplausible = 30.0;
 [[nodiscard]] inline bool is_observable(const Hypothesis& h, double information) {
   const double largest = kImplausible * h.plausible;
   return information * largest * largest >= 1.0;
+}
+
+/// Of an IMU of this grade; how far an antenna or a clock may be off depends on who has set it up.
+[[nodiscard]] inline bool is_implausible(const Hypothesis& h, double value) {
+  const bool is_of_imu = h.effect->site == Site::kGyro || h.effect->site == Site::kAccel;
+  return is_of_imu && std::abs(value) > kImplausible * h.plausible;
 }
 
 }  // namespace coast::diagnose

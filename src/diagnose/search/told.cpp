@@ -4,13 +4,16 @@
 #include <string>
 #include <utility>
 
+#include "evidence/observable.hpp"
+
 namespace coast::diagnose {
 
 namespace {
 
 Alternative alternative(const Suspicion& s, double log_odds, const Hypotheses& hypotheses) {
   const Hypothesis& h = hypotheses[s.hypothesis];
-  return {std::string(h.effect->name), std::string(name(h.effect->site)), h.axis_name(), log_odds};
+  return {std::string(h.effect->name), std::string(name(h.effect->site)), h.axis_name(), log_odds,
+          is_implausible(h, s.estimate)};
 }
 
 Alternative alternative(const FittedEffect& fit, double log_odds) {
@@ -81,9 +84,11 @@ NoiseFinding noise_finding_of(const std::vector<FittedEffect>& fits, double p_va
   for (std::size_t i = 1; i < fits.size(); ++i)
     if (const auto odds = log_odds_told(f.gain - fits[i].gain, evidence_of(f) - evidence_of(fits[i])))
       finding.alternatives.push_back(alternative(fits[i], *odds));
-  for (const Suspicion& s : state.seen.suspicions.all)
-    if (const auto odds = log_odds_told(f.gain - 0.5 * s.likelihood_ratio, evidence_of(f) - evidence_of(s, state)))
-      finding.alternatives.push_back(alternative(s, *odds, state.run->hypotheses()));
+  // Noise must not hide what a recorded signal explains, however large that would be.
+  for (const std::vector<Suspicion>* some : {&state.seen.suspicions.all, &state.seen.suspicions.implausible})
+    for (const Suspicion& s : *some)
+      if (const auto odds = log_odds_told(f.gain - 0.5 * s.likelihood_ratio, evidence_of(f) - evidence_of(s, state)))
+        finding.alternatives.push_back(alternative(s, *odds, state.run->hypotheses()));
   std::ranges::sort(finding.alternatives, {}, &Alternative::log_odds);
   return finding;
 }

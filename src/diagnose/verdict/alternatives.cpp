@@ -52,7 +52,7 @@ void tell_of(const State& other, double log_odds, const Context& context, State&
     for (const Alternative& one : theirs) {
       if (has(ours, one)) continue;
       std::erase_if(alternatives, [&](const Alternative& told) { return has({one}, told); });
-      alternatives.push_back({one.name, one.sensor, one.axis, log_odds});
+      alternatives.push_back({one.name, one.sensor, one.axis, log_odds, one.implausible});
     }
     std::ranges::sort(alternatives, {}, &Alternative::log_odds);
   };

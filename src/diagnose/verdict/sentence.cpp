@@ -102,16 +102,6 @@ std::string plain_size(double value, double sd, std::string_view unit, Site site
   return fmt::format("{} {}", text, plain != kPlain.end() ? plain->said : unit);
 }
 
-namespace {
-
-/// Of an IMU of this grade; how far an antenna or a clock may be off depends on who has set it up.
-bool is_implausible(const Finding& f) {
-  const Site site = f.hypothesis.effect->site;
-  return (site == Site::kGyro || site == Site::kAccel) && std::abs(f.value) > kImplausible * f.hypothesis.plausible;
-}
-
-}  // namespace
-
 std::string sentence_of_one(const Finding& f) {
   const Effect& effect = *f.hypothesis.effect;
   const std::string_view axis = f.hypothesis.axis_name();
@@ -127,7 +117,7 @@ std::string sentence_of_one(const Finding& f) {
   replace(text, "{axis}", is_pair ? axis.substr(0, 1) : axis_word(axis));
   replace(text, "{cause}", is_pair ? axis.substr(1) : axis);
   text += when(f);
-  if (is_implausible(f)) text += " So much is implausible: look for another cause too.";
+  if (is_implausible(f.hypothesis, f.value)) text += " So much is implausible: look for another cause too.";
   return text;
 }
 

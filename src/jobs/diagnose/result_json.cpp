@@ -24,11 +24,13 @@ Json parameter_json(std::string_view name, double value, std::string_view unit) 
 }
 
 Json alternative_json(const diagnose::Alternative& a, std::string_view separating_manoeuvre) {
-  return {{"name", a.name},
-          {"sensor", a.sensor},
-          {"axis", a.axis},
-          {"log_odds", a.log_odds},
-          {"separating_manoeuvre", separating_manoeuvre}};
+  Json j = {{"name", a.name},
+            {"sensor", a.sensor},
+            {"axis", a.axis},
+            {"log_odds", a.log_odds},
+            {"separating_manoeuvre", separating_manoeuvre}};
+  if (a.implausible) j["implausible"] = true;
+  return j;
 }
 
 /// Odds of an alternative against the reported finding; above one if it is likelier, but the search for more effects stopped.
@@ -40,8 +42,9 @@ std::string other_readings(const std::vector<diagnose::Alternative>& alternative
   if (alternatives.empty()) return {};
   std::string text = " It could also be";
   for (std::size_t i = 0; i < std::min<std::size_t>(3, alternatives.size()); ++i)
-    text += fmt::format("{} {}{}{} ({})", i == 0 ? "" : ",", alternatives[i].name, alternatives[i].axis.empty() ? "" : " ",
-                        alternatives[i].axis, odds(alternatives[i].log_odds));
+    text +=
+        fmt::format("{} {}{}{} ({}{})", i == 0 ? "" : ",", alternatives[i].name, alternatives[i].axis.empty() ? "" : " ",
+                    alternatives[i].axis, odds(alternatives[i].log_odds), alternatives[i].implausible ? ", implausible" : "");
   return text + fmt::format(". What would tell: {}", separating_manoeuvre);
 }
 

@@ -66,7 +66,8 @@ std::string when(const diagnose::Finding& f) {
 std::string certainty(const std::vector<diagnose::Alternative>& alternatives) {
   if (alternatives.empty()) return {};
   const diagnose::Alternative& first = alternatives.front();
-  const std::string name = fmt::format("{} {}{}{}", first.name, first.sensor, first.axis.empty() ? "" : " ", first.axis);
+  const std::string name = fmt::format("{} {}{}{}{}", first.name, first.sensor, first.axis.empty() ? "" : " ", first.axis,
+                                       first.implausible ? " (of an implausible size)" : "");
   if (first.log_odds < 0.7)  // two to one
     return fmt::format("It may as well be {}: this recording does not tell them apart.", name);
   return fmt::format("Less likely, but possible: {}.", name);
