@@ -156,6 +156,31 @@ TEST(Runs, KeepRestartsUnlessTheAntennaIsElsewhere) {
   EXPECT_NEAR((anew.back().nav.r_eb_e - found.back().nav.r_eb_e).norm(), 0.2, 0.05);
 }
 
+// What happened before is likelier to happen again, of a size like that.
+TEST(Candidates, KnowWhatHappenedBefore) {
+  MissionInput input = test::honest_mission(1, 220.0);
+  const geo::GpsTime jump = input.gnss.fixes.front().t + 120.0;
+  for (record::GnssFix& fix : input.gnss.fixes)
+    if (fix.t > jump) fix.r_ea_e.z() += 0.2;
+  Searching search(input);
+  const State start = with_draws(begin(search.context), search.context);
+  const auto evidence_after = [&](const std::vector<double>& sizes) {
+    Look look(start, search.context);
+    static_cast<void>(look.examination());
+    State state = look.state();
+    for (const double size : sizes) {
+      state.account.findings.push_back({});
+      state.account.findings.back().hypothesis = state.run->hypotheses()[index_of(state, "gnss_wrong_fix", "n")];
+      state.account.findings.back().value = size;
+    }
+    return Candidates(state, search.context).likeliest().log_bayes;
+  };
+  const double first = evidence_after({});
+  EXPECT_NEAR(evidence_after({0.5, -0.5}) - first, std::log(5.0), 1e-9);  // 0.5 m is the catalogue's size
+  EXPECT_GT(evidence_after({0.2, -0.2}) - first, std::log(5.0) + 0.3);
+  EXPECT_LT(evidence_after({20.0, -20.0}), first);
+}
+
 // A signal that explains as much as the noise does is told beside it, and that a sensor hardly has so much of it.
 TEST(Told, NoiseHidesNoImplausibleEffect) {
   Searching search(test::honest_mission(1, 220.0));

@@ -16,10 +16,24 @@ namespace {
 constexpr double kLinear = 0.1;  // fraction of a large effect's gain by which its score may be wrong
 constexpr std::size_t kMostByRuns = 3;
 
-/// What happened some times in a mission is likelier to happen once more than what did not. Rates with Jeffreys' prior:
-/// expected are n + 1/2 more, against 1/2.
-double log_odds_of_another(std::ptrdiff_t times) {
-  return std::log(2.0 * static_cast<double>(times) + 1.0);
+/// How much likelier another time of an effect is where it happened before than where it did not. Rates with Jeffreys' prior:
+/// n + 1/2 more are expected, against 1/2. Sizes in one mission are alike, and are the prior's scale.
+double log_odds_of_another(const Suspicion& s, const Hypothesis& h, std::vector<double> sizes) {
+  if (sizes.empty()) return 0.0;
+  const double information = 1.0 / (s.sd * s.sd);
+  const double score = s.estimate * information;
+  const double rate = std::log(2.0 * static_cast<double>(sizes.size()) + 1.0);
+  const auto middle = sizes.begin() + static_cast<std::ptrdiff_t>(sizes.size() / 2);
+  std::ranges::nth_element(sizes, middle);
+  return rate + log_bayes_factor(score, information, *middle) - log_bayes_factor(score, information, h.plausible);
+}
+
+/// Of the times of an effect among the findings.
+std::vector<double> sizes_of(const Effect& effect, const Account& account) {
+  std::vector<double> sizes;
+  for (const Finding& f : account.findings)
+    if (f.hypothesis.effect == &effect) sizes.push_back(std::abs(f.value));
+  return sizes;
 }
 
 }  // namespace
@@ -44,10 +58,8 @@ std::vector<Suspicion> Candidates::possible(const std::vector<Suspicion>& suspic
   for (const Suspicion& s : suspicions) {
     if (state_->excluded.excludes(s.hypothesis)) continue;
     all.push_back(s);
-    const Effect* const effect = state_->run->hypotheses()[s.hypothesis].effect;
-    const auto is_same = [effect](const Finding& f) { return f.hypothesis.effect == effect; };
-    if (effect->repeats())
-      all.back().log_bayes += log_odds_of_another(std::ranges::count_if(state_->account.findings, is_same));
+    const Hypothesis& h = state_->run->hypotheses()[s.hypothesis];
+    if (h.effect->repeats()) all.back().log_bayes += log_odds_of_another(s, h, sizes_of(*h.effect, state_->account));
   }
   return all;
 }
