@@ -233,6 +233,23 @@ TEST(DiagnosisJson, HasEachTimeOfWhatHappenedOften) {
   EXPECT_NE(yaml.find("axis: d, start_s: 1100.000000, value: -0.08"), std::string::npos) << yaml;
 }
 
+// In words, by the odds of the likeliest other reading.
+TEST(DiagnosisPage, SaysHowSureANameIs) {
+  const auto said = [](double log_odds) {
+    DiagnosisResult result;
+    diagnose::NoiseFinding noise;
+    noise.name = "flicker_noise";
+    noise.sensor = "gyro";
+    noise.unit = "rad/s";
+    noise.alternatives = {{"bias_step", "gyro", "y", log_odds}};
+    result.diagnosis.noise = {noise};
+    return diagnosis_page("", result, "", "").sections.front().notes.front().text;
+  };
+  EXPECT_EQ(said(3.0), "Less likely, but possible: bias_step gyro y.");
+  EXPECT_EQ(said(-0.1), "It may as well be bias_step gyro y: this recording does not tell them apart.");
+  EXPECT_EQ(said(-3.0), "bias_step gyro y would explain more, but was not selected.");
+}
+
 struct SpoiledEffect {
   const char* what;
   const char* entry;    ///< of `effects:`

@@ -68,8 +68,9 @@ std::string certainty(const std::vector<diagnose::Alternative>& alternatives) {
   const diagnose::Alternative& first = alternatives.front();
   const std::string name = fmt::format("{} {}{}{}{}", first.name, first.sensor, first.axis.empty() ? "" : " ", first.axis,
                                        first.implausible ? " (of an implausible size)" : "");
-  if (first.log_odds < 0.7)  // two to one
-    return fmt::format("It may as well be {}: this recording does not tell them apart.", name);
+  constexpr double kTwoToOne = 0.7;
+  if (first.log_odds < -kTwoToOne) return fmt::format("{} would explain more, but was not selected.", name);
+  if (first.log_odds < kTwoToOne) return fmt::format("It may as well be {}: this recording does not tell them apart.", name);
   return fmt::format("Less likely, but possible: {}.", name);
 }
 
