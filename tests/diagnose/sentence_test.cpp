@@ -59,9 +59,9 @@ TEST(Sentence, SaysHowOften) {
   };
   Finding all = fix(0, 0.14, 1000.0);
   all.further = {fix(1, -0.20, 1300.0), fix(2, 0.10, 1000.4)};
-  EXPECT_EQ(sentence(all), "The fixes jump 2 times, by up to 20.0 +- 1.0 cm.");  // components of one jump count once
+  EXPECT_EQ(sentence(all), "The fixes are wrong 2 times, by up to 20.0 +- 1.0 cm.");  // components of one jump count once
   all.further.erase(all.further.begin());
-  EXPECT_EQ(sentence(all), "The fixes jump once, by up to 14.0 +- 1.0 cm.");
+  EXPECT_EQ(sentence(all), "The fixes are wrong once, by up to 14.0 +- 1.0 cm.");
   const std::vector<Finding> times = times_of(all);
   ASSERT_EQ(times.size(), 2U);
   EXPECT_EQ(sentence_of_one(times[1]), "The fixes are 10.0 +- 1.0 cm too far down, from 1000.4 s of week on.");

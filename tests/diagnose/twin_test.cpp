@@ -41,6 +41,14 @@ TEST(Twin, ErrsAsTheModelSays) {
   EXPECT_NEAR(solved(one).nis, 1.0, 0.08);
 }
 
+// A state behind a gap that was found with the recording's fixes says nothing of the twin's.
+TEST(Twin, FindsItsStateBehindGapsItself) {
+  MissionInput input = test::honest_mission(21, 220.0);
+  const std::vector<record::NavState> path = solved(input).path;
+  input.setup.restarts = {{path[path.size() / 2], Eigen::Vector3d::Ones(), Eigen::Vector3d::Ones(), {}}};
+  EXPECT_FALSE(twin(path, input, 5).setup.restarts);
+}
+
 // Sensors without errors and fixes of a nanometre: the filter has nothing to correct, so increments and fixes belong together.
 TEST(Twin, IsOneMotion) {
   MissionInput input = test::honest_mission(22);

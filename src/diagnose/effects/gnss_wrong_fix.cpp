@@ -13,7 +13,7 @@ Effect gnss_wrong_fix() {
       .meaning = "Integers were fixed wrongly for a while: positions are shifted with small sigmas.",
       .sentence = "The fixes are {size} too far {way}.",
       .ways = {{"north", "south"}, {"east", "west"}, {"down", "up"}},
-      .sentence_of_many = "The fixes jump {times}, by up to {size}.",
+      .sentence_of_many = "The fixes are wrong {times}, by up to {size}.",
       .separating_manoeuvre = "None needed: entry and exit are jumps that no vehicle makes.",
       .source = "de Jong & Penzer (1998)",
       .axes = {"n", "e", "d"},

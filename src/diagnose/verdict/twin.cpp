@@ -148,6 +148,7 @@ MissionInput twin(const std::vector<record::NavState>& path, const MissionInput&
   result.imu.temperature = mission.imu.temperature;
   rotate(result.imu, model.setup.C_s_b);
   result.setup.high_order_compensation = false;
+  result.setup.restarts.reset();  // they are of the recording: the twin has fixes of its own behind its gaps
   return result;
 }
 
