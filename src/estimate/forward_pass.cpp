@@ -32,6 +32,7 @@ ForwardPass::ForwardPass(const Mission& mission, const StateLayout& layout, cons
       next_aid_(mission.aids.size(), 0),
       member_counts_(layout.members().size()),
       aid_counts_(mission.aids.size()) {
+  if (outputs.closed_knots) propagation_.split_white_noise();
   if (mission.carrier != nullptr) tight_.emplace(*mission.carrier, layout, mission.earth_rate < 0.0);
   gate_.fill(std::numeric_limits<double>::infinity());
   if (options.gate_probability > 0.0)
@@ -147,7 +148,7 @@ void ForwardPass::close_interval() {
 
 void ForwardPass::deliver_knot() {
   if (outputs_.knots != nullptr) outputs_.knots->append(knot_);
-  if (outputs_.closed_knots) outputs_.closed_knots(knot_, propagation_.white_noise());
+  if (outputs_.closed_knots) outputs_.closed_knots(knot_, propagation_.Q_axes());
 }
 
 void ForwardPass::knot() {

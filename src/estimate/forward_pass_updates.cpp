@@ -89,7 +89,7 @@ void ForwardPass::vehicle_updates() {
 void ForwardPass::hold_heading() {
   if (!options_.vehicle.heading_hold_sd || !standing_ || restart_at(mission_, state_.nav.t) != nullptr) return;
   const RestInterval interval{standing_->q_b_e, propagation_.elapsed(), propagation_.Phi_n().middleRows<3>(kPsi),
-                              propagation_.white_noise().gyro.middleCols<3>(kPsi)};
+                              propagation_.Q_gyro().middleCols<3>(kPsi)};
   const Linearised measurement = heading_hold(state_, context(), interval, *options_.vehicle.heading_hold_sd);
   static_cast<void>(take({UpdateKind::kHeadingHold}, measurement, record::FixQuality::kUnknown));
 }

@@ -14,8 +14,8 @@
 namespace coast::estimate {
 
 noise::ImuErrorModel adjusted(const noise::ImuErrorModel& model, const NoiseAdjustment& adjustment) {
-  return model.with_white_noise_scaled(noise::Sensor::kGyro, adjustment.gyro_factor)
-      .with_white_noise_scaled(noise::Sensor::kAccel, adjustment.accel_factor);
+  return model.with_white_noise_scaled(noise::Sensor::kGyro, adjustment.gyro_factors)
+      .with_white_noise_scaled(noise::Sensor::kAccel, adjustment.accel_factors);
 }
 
 FilterOptions adjusted(const FilterOptions& options, const NoiseAdjustment& adjustment) {
@@ -87,11 +87,11 @@ void describe(const NoiseObjective& objective, const std::vector<NoiseParameter>
   const FilterResult stated = objective.run(as_stated);
   fit.innovations = stated.innovations.size();
   fit.log_likelihood_before = stated.log_likelihood;
-  fit.log_likelihood_after = optimum.value;
+  fit.log_likelihood_after = optimum.value - objective.prior().value(optimum.theta);
   fit.log_sd = deviations(optimum.information);
   fit.needed.resize(parameters.size());
   tbb::parallel_for(std::size_t{0}, parameters.size(),
-                    [&](std::size_t i) { fit.needed[i] = optimum.value - log_likelihood_without(parameters[i]); });
+                    [&](std::size_t i) { fit.needed[i] = fit.log_likelihood_after - log_likelihood_without(parameters[i]); });
 }
 
 std::vector<Bound> bounds_met(const Eigen::VectorXd& theta, const SearchBox& box) {

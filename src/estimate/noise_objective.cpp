@@ -7,9 +7,32 @@
 
 namespace coast::estimate {
 
+TriadPrior::TriadPrior(const std::vector<NoiseParameter>& parameters) {
+  constexpr double kSd = 0.5;  // of a logarithm: two axes differ by a factor of two
+  const auto n = static_cast<Eigen::Index>(parameters.size());
+  information_ = Eigen::MatrixXd::Zero(n, n);
+  for (Eigen::Index i = 0; i + 2 < n; ++i) {
+    const NoisePart first = parameters[static_cast<std::size_t>(i)].part;
+    if (first == NoisePart::kGyroX || first == NoisePart::kAccelX)
+      information_.block<3, 3>(i, i) = (Eigen::Matrix3d::Identity() - Eigen::Matrix3d::Constant(1.0 / 3.0)) / (kSd * kSd);
+  }
+}
+
+NoiseScores TriadPrior::added_to(NoiseScores scores, const Eigen::VectorXd& theta) const {
+  scores.gradient -= information_ * theta;
+  scores.information += information_;
+  return scores;
+}
+
 NoiseObjective::NoiseObjective(const Mission& mission, const noise::ImuErrorModel& model, const FilterOptions& options,
                                const std::vector<NoiseParameter>& parameters, const NoiseAdjustment& fixed, const Start& start)
-    : mission_(mission), model_(model), options_(options), parameters_(parameters), fixed_(fixed), start_(start) {
+    : mission_(mission),
+      model_(model),
+      options_(options),
+      parameters_(parameters),
+      prior_(parameters),
+      fixed_(fixed),
+      start_(start) {
   options_.gate_probability = 0.0;
 }
 
@@ -25,7 +48,7 @@ double NoiseObjective::value(const Eigen::VectorXd& theta) {
   theta_ = theta;
   filter_.emplace(filter_at(at(theta)));
   try {
-    return pass_.run(*filter_, start_(*filter_)).log_likelihood;
+    return pass_.run(*filter_, start_(*filter_)).log_likelihood + prior_.value(theta);
   } catch (const NumericalError&) {
     return -std::numeric_limits<double>::infinity();
   }
@@ -34,7 +57,7 @@ double NoiseObjective::value(const Eigen::VectorXd& theta) {
 NoiseScores NoiseObjective::scores() const {
   NoiseModel model{mission_, filter_->layout(), at(theta_), parameters_, {}};
   for (Eigen::Index i = 0; i < theta_.size(); ++i) model.start.push_back(start_slope(i));
-  return noise_scores(pass_, model);
+  return prior_.added_to(noise_scores(pass_, model), theta_);
 }
 
 NoiseScores NoiseObjective::scores_beside(const Eigen::VectorXd& theta, double& value) const {
@@ -48,7 +71,7 @@ NoiseScores NoiseObjective::scores_beside(const Eigen::VectorXd& theta, double& 
 
 double NoiseObjective::value_beside(const Eigen::VectorXd& theta) const {
   try {
-    return run(at(theta)).log_likelihood;
+    return run(at(theta)).log_likelihood + prior_.value(theta);
   } catch (const NumericalError&) {
     return -std::numeric_limits<double>::infinity();
   }

@@ -9,7 +9,18 @@
 
 namespace coast::estimate {
 
-/// The filter's log-likelihood with an open gate, as a function of the logarithms of the free parameters.
+/// The axes of a triad are alike: their log factors scatter about their mean with this prior's deviation.
+class TriadPrior {
+ public:
+  explicit TriadPrior(const std::vector<NoiseParameter>& parameters);
+  [[nodiscard]] double value(const Eigen::VectorXd& theta) const { return -0.5 * theta.dot(information_ * theta); }
+  [[nodiscard]] NoiseScores added_to(NoiseScores scores, const Eigen::VectorXd& theta) const;
+
+ private:
+  Eigen::MatrixXd information_;
+};
+
+/// The filter's log-likelihood with an open gate and the prior, as a function of the logarithms of the free parameters.
 class NoiseObjective {
  public:
   using Start = std::function<FilterState(const ForwardFilter&)>;
@@ -29,6 +40,7 @@ class NoiseObjective {
   [[nodiscard]] double value_beside(const Eigen::VectorXd& theta) const;
   /// An additional pass that is not kept. @throws NumericalError  the filter fails
   [[nodiscard]] FilterResult run(const NoiseAdjustment& adjustment) const;
+  [[nodiscard]] const TriadPrior& prior() const { return prior_; }
   [[nodiscard]] int passes() const { return passes_; }
 
  private:
@@ -39,6 +51,7 @@ class NoiseObjective {
   const noise::ImuErrorModel& model_;
   FilterOptions options_;
   const std::vector<NoiseParameter>& parameters_;
+  TriadPrior prior_;
   NoiseAdjustment fixed_;
   const Start& start_;
   mutable std::atomic<int> passes_{0};

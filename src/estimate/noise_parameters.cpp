@@ -36,9 +36,17 @@ std::vector<NoiseParameter> free_parameters(const NoiseFitChoice& choice, bool v
   if (choice.imu_white_noise) {
     constexpr double kLow = 0.05, kHigh = 1000.0;
     add(
-        NoisePart::kGyro, "gyro_factor", [](Adjustment& a) -> double& { return a.gyro_factor; }, kLow, kHigh);
+        NoisePart::kGyroX, "gyro_factor_x", [](Adjustment& a) -> double& { return a.gyro_factors.x(); }, kLow, kHigh);
     add(
-        NoisePart::kAccel, "accel_factor", [](Adjustment& a) -> double& { return a.accel_factor; }, kLow, kHigh);
+        NoisePart::kGyroY, "gyro_factor_y", [](Adjustment& a) -> double& { return a.gyro_factors.y(); }, kLow, kHigh);
+    add(
+        NoisePart::kGyroZ, "gyro_factor_z", [](Adjustment& a) -> double& { return a.gyro_factors.z(); }, kLow, kHigh);
+    add(
+        NoisePart::kAccelX, "accel_factor_x", [](Adjustment& a) -> double& { return a.accel_factors.x(); }, kLow, kHigh);
+    add(
+        NoisePart::kAccelY, "accel_factor_y", [](Adjustment& a) -> double& { return a.accel_factors.y(); }, kLow, kHigh);
+    add(
+        NoisePart::kAccelZ, "accel_factor_z", [](Adjustment& a) -> double& { return a.accel_factors.z(); }, kLow, kHigh);
   }
   return p;
 }

@@ -1,6 +1,7 @@
 #pragma once
 // The free parameters of the noise; private to the room.
 
+#include <array>
 #include <vector>
 
 #include "coast/estimate/noise_fit.hpp"
@@ -15,9 +16,17 @@ enum class NoisePart {
   kCorrelatedHorizontal,
   kCorrelatedVertical,
   kCorrelatedTime,
-  kGyro,
-  kAccel
+  kGyroX,
+  kGyroY,
+  kGyroZ,
+  kAccelX,
+  kAccelY,
+  kAccelZ,
+  kCount
 };
+/// In the order of AxisNoise.
+inline constexpr std::array kWhiteNoise{NoisePart::kGyroX,  NoisePart::kGyroY,  NoisePart::kGyroZ,
+                                        NoisePart::kAccelX, NoisePart::kAccelY, NoisePart::kAccelZ};
 
 /// One free parameter: its part and its bounds (natural units; the search uses logarithms).
 struct NoiseParameter {

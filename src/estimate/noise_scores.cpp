@@ -23,11 +23,13 @@ class Places {
   [[nodiscard]] Index operator()(NoisePart part) const { return at_[static_cast<std::size_t>(part)]; }
 
  private:
-  std::array<Index, 8> at_;
+  std::array<Index, static_cast<std::size_t>(NoisePart::kCount)> at_;
 };
 
+/// Parts of the noise of measurements; the white noise affects the differences of members.
 constexpr std::array kOfUpdates{NoisePart::kScaleHorizontal, NoisePart::kScaleVertical, NoisePart::kScaleVelocity,
-                                NoisePart::kGyro, NoisePart::kAccel};
+                                NoisePart::kGyroX,           NoisePart::kGyroY,         NoisePart::kGyroZ,
+                                NoisePart::kAccelX,          NoisePart::kAccelY,        NoisePart::kAccelZ};
 
 /// dR with respect to the logarithm of a parameter; empty if it does not affect the measurement.
 ComponentCov slope_of_R(NoisePart part, const Measurement& what, const AppliedUpdate& update, const Eigen::Matrix3d& C_n_e,
@@ -43,20 +45,20 @@ ComponentCov slope_of_R(NoisePart part, const Measurement& what, const AppliedUp
   }
   if (what.kind == UpdateKind::kGnssVelocity && part == NoisePart::kScaleVelocity)
     return rotated(2.0 * scale.velocity * scale.velocity * model.mission.gnss.fixes[what.index].velocity->cov_n);
-  // White noise of all members has the same factor.
-  const NoisePart own = what.sensor == noise::Sensor::kGyro ? NoisePart::kGyro : NoisePart::kAccel;
-  if (what.kind == UpdateKind::kMemberDifference && part == own) {
-    const auto m = update.y.size();
-    const ComponentCov S = update.S_inv.llt().solve(ComponentCov::Identity(m, m));
-    const ComponentCov HK = update.H * update.K;
-    return 2.0 * (S - HK * S);
-  }
-  return {};
+  if (what.kind != UpdateKind::kMemberDifference) return {};
+  // White noise of all members has the same factor; R = S - H K S is diagonal.
+  const Index axis = static_cast<Index>(part) -
+                     static_cast<Index>(what.sensor == noise::Sensor::kGyro ? NoisePart::kGyroX : NoisePart::kAccelX);
+  if (axis < 0 || axis > 2) return {};
+  const ComponentCov S = update.S_inv.llt().solve(ComponentCov::Identity(3, 3));
+  ComponentCov slope = ComponentCov::Zero(3, 3);
+  slope(axis, axis) = 2.0 * (S(axis, axis) - (update.H * (update.K * S.col(axis)))(axis));
+  return slope;
 }
 
 /// Results of the backward pass for the forward one.
 struct Disturbances {
-  NavVector gyro, accel;             ///< Q r of the white noise in the interval
+  std::array<NavVector, 6> white;    ///< Q r of the white noise in the interval, in the order of AxisNoise
   std::vector<Components> u;         ///< of the updates
   Eigen::Vector3d gnss;              ///< H' u at the knot, rows of the correlated error
   Eigen::Vector3d behind, behind_t;  ///< the same of all later knots, times exp(-t/tau); times t/tau exp(-t/tau)
@@ -73,10 +75,11 @@ class BackwardScores {
   void through_interval(const RecordedKnot& knot, Disturbances& left) {
     const Eigen::VectorXd& r = recursion_.r();
     const auto N = recursion_.N().topLeftCorner<kNav, kNav>();
-    left.gyro.noalias() = knot.white.gyro * r.head<kNav>();
-    left.accel.noalias() = knot.white.accel * r.head<kNav>();
-    add(NoisePart::kGyro, r.head<kNav>().dot(left.gyro) - knot.white.gyro.cwiseProduct(N).sum());
-    add(NoisePart::kAccel, r.head<kNav>().dot(left.accel) - knot.white.accel.cwiseProduct(N).sum());
+    for (std::size_t i = 0; i < kWhiteNoise.size(); ++i) {
+      if (place_(kWhiteNoise[i]) < 0) continue;
+      left.white[i].noalias() = knot.white[i] * r.head<kNav>();
+      add(kWhiteNoise[i], r.head<kNav>().dot(left.white[i]) - knot.white[i].cwiseProduct(N).sum());
+    }
     if (!model_.layout.gnss_error()) {
       recursion_.through_transition(knot.knot);
       return;
@@ -189,8 +192,8 @@ class InformationPass {
     nav_.noalias() = knot.knot.Phi_n * d_.topRows(knot.knot.Phi_n.cols());
     blocks_.over(knot.knot.interval).apply(d_.bottomRows(rest));
     d_.topRows<kNav>() = nav_;
-    if (const Index i = place_(NoisePart::kGyro); i >= 0) d_.col(i).head<kNav>() += 2.0 * at.gyro;
-    if (const Index i = place_(NoisePart::kAccel); i >= 0) d_.col(i).head<kNav>() += 2.0 * at.accel;
+    for (std::size_t i = 0; i < kWhiteNoise.size(); ++i)
+      if (const Index column = place_(kWhiteNoise[i]); column >= 0) d_.col(column).head<kNav>() += 2.0 * at.white[i];
     const double steps = knot.knot.interval / model_.adjustment.correlated_gnss.time_s;
     const double phi = std::exp(-steps);
     before_t_ = phi * (before_t_ + steps * before_);

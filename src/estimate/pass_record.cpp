@@ -11,13 +11,13 @@ FilterResult PassRecord::run(const ForwardFilter& filter, const FilterState& sta
   outputs.measurements = [this](const Measurement& measurement, bool used) {
     if (used) pending_.push_back(measurement);
   };
-  outputs.closed_knots = [this, gnss_error = filter.layout().gnss_error()](const Knot& knot, const WhiteNoise& white) {
+  outputs.closed_knots = [this, gnss_error = filter.layout().gnss_error()](const Knot& knot, const AxisNoise& white) {
     add(knot, white, gnss_error);
   };
   return filter.run(start, outputs);
 }
 
-void PassRecord::add(const Knot& knot, const WhiteNoise& white, const std::optional<int>& gnss_error) {
+void PassRecord::add(const Knot& knot, const AxisNoise& white, const std::optional<int>& gnss_error) {
   if (size_ == knots_.size()) knots_.emplace_back();
   RecordedKnot& to = knots_[size_++];
   to.knot.post = knot.post;

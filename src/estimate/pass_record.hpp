@@ -12,7 +12,7 @@ namespace coast::estimate {
 struct RecordedKnot {
   Knot knot;                              ///< without data needed only for a continuation: covariance, remainder
   std::vector<Measurement> measurements;  ///< of its updates, in their order
-  WhiteNoise white;                       ///< of the interval
+  AxisNoise white;                        ///< of the interval
   Eigen::Matrix3Xd P_gnss;                ///< rows of P_post of the correlated GNSS error; empty if there is none
   Eigen::Matrix3d C_n_e;
 };
@@ -26,7 +26,7 @@ class PassRecord {
   [[nodiscard]] const RecordedKnot& operator[](std::size_t i) const { return knots_[i]; }
 
  private:
-  void add(const Knot& knot, const WhiteNoise& white, const std::optional<int>& gnss_error);
+  void add(const Knot& knot, const AxisNoise& white, const std::optional<int>& gnss_error);
 
   std::vector<RecordedKnot> knots_;
   std::size_t size_ = 0;

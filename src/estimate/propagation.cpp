@@ -83,12 +83,9 @@ void Propagation::follow_noise_level() {
   const std::size_t before = noise_level_;
   while (noise_level_ + 1 < levels.size() && levels[noise_level_].to <= t) ++noise_level_;
   if (noise_level_ == before && noise_level_ > 0) return;
-  const auto scaled = [&](const Eigen::Vector3d& factors, const Eigen::Matrix3d& density_b) -> Eigen::Matrix3d {
-    const Eigen::Matrix3d root = mission_.C_s_b * factors.cwiseSqrt().asDiagonal() * mission_.C_s_b.transpose();
-    return root * density_b * root;
-  };
   const record::NoiseLevel& level = levels[noise_level_];
-  transition_.set_white_noise(scaled(level.gyro, layout_.gyro_density_b()), scaled(level.accel, layout_.accel_density_b()));
+  transition_.set_white_noise(layout_.gyro_noise_b() * level.gyro.cwiseSqrt().asDiagonal(),
+                              layout_.accel_noise_b() * level.accel.cwiseSqrt().asDiagonal());
 }
 
 void Propagation::add_gap_noise(Eigen::MatrixXd& P) {

@@ -62,6 +62,7 @@ class Propagation {
  public:
   Propagation(const Mission& mission, const StateLayout& layout);
 
+  void split_white_noise() { transition_.split_white_noise(); }
   void set(const Navigator::Start& start);
   void step(const SampleStep& step);
   /// Ends an interval:  P <- Phi P Phi' + Q
@@ -70,7 +71,8 @@ class Propagation {
   void correct(const record::NavState& nav, const Eigen::VectorXd& x);
   /// For the current interval, or for the last closed one until the next begins.
   [[nodiscard]] const NavRows& Phi_n() const { return transition_.Phi_n(); }
-  [[nodiscard]] WhiteNoise white_noise() const { return transition_.white_noise(); }
+  [[nodiscard]] const NavCov& Q_gyro() const { return transition_.Q_gyro(); }
+  [[nodiscard]] const AxisNoise& Q_axes() const { return transition_.Q_axes(); }
   [[nodiscard]] double elapsed() const { return transition_.elapsed(); }
   [[nodiscard]] const Navigator& navigator() const { return navigator_; }
 

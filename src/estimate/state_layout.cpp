@@ -108,7 +108,7 @@ void StateLayout::add_sensor(const noise::ImuErrorModel& model, noise::Sensor se
       sensors_.push_back(std::move(block));
     }
   }
-  (gyro ? gyro_density_b_ : accel_density_b_) = C_s_b * density_s.asDiagonal() * C_s_b.transpose();
+  (gyro ? gyro_noise_b_ : accel_noise_b_) = C_s_b * density_s.cwiseSqrt().asDiagonal();
 }
 
 int StateLayout::add_auxiliary(const std::string& name, double sigma, double beta, int count) {

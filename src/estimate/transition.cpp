@@ -1,5 +1,7 @@
 #include "coast/estimate/transition.hpp"
 
+#include <cmath>
+
 #include "coast/geo/rotation.hpp"
 
 namespace coast::estimate {
@@ -17,8 +19,8 @@ int response_power(noise::Sensor sensor, int row) {
 TransitionAccumulator::TransitionAccumulator(const StateLayout& layout, double earth_rate)
     : layout_(layout),
       earth_rate_(earth_rate),
-      gyro_density_b_(layout.gyro_density_b()),
-      accel_density_b_(layout.accel_density_b()),
+      gyro_noise_b_(layout.gyro_noise_b()),
+      accel_noise_b_(layout.accel_noise_b()),
       Phi_n_(kNav, layout.sensor_end()),
       output_(layout.sensor_end() - kNav),
       middle_(output_),
@@ -37,6 +39,7 @@ void TransitionAccumulator::reset() {
   Phi_n_.leftCols<kNav>().setIdentity();
   Q_n_.setZero();
   Q_gyro_.setZero();
+  for (NavCov& Q : Q_axes_) Q.setZero();
   for (const auto& block : layout_.sensors()) output_.segment(block.offset - kNav, block.size) = block.output;
   elapsed_ = 0.0;
   clear_pending();
@@ -86,23 +89,40 @@ void TransitionAccumulator::add_sensor_columns() {
   fold_.add_accel_errors(Phi_n_.rightCols(accel_states), effect_.rightCols(accel_states));
 }
 
+namespace {
+
+/// @param q  integral of the density over the fold, e-frame  @param h  its length, s
+void add_accel_noise(const Eigen::Matrix3d& q, double h, NavCov& Q) {
+  Q.block<3, 3>(kPos, kPos) += (h * h / 3.0) * q;
+  Q.block<3, 3>(kPos, kVel) += (h / 2.0) * q;
+  Q.block<3, 3>(kVel, kPos) += (h / 2.0) * q;
+  Q.block<3, 3>(kVel, kVel) += q;
+}
+
+/// @param sum_f_cross  [integral of C f x]
+void add_gyro_noise(const Eigen::Matrix3d& q, const Eigen::Matrix3d& sum_f_cross, NavCov& Q) {
+  const Eigen::Matrix3d tilted = sum_f_cross * q;
+  Q.block<3, 3>(kVel, kVel) += (tilted * sum_f_cross.transpose()) / 3.0;
+  Q.block<3, 3>(kVel, kPsi) -= 0.5 * tilted;
+  Q.block<3, 3>(kPsi, kVel) -= 0.5 * tilted.transpose();
+  Q.block<3, 3>(kPsi, kPsi) += q;
+}
+
+}  // namespace
+
 void TransitionAccumulator::add_white_noise() {
   const double h = fold_.h;
-  const Eigen::Matrix3d C = sum_C_ / h;
-  const Eigen::Matrix3d q_a = h * (C * accel_density_b_ * C.transpose());
-  const Eigen::Matrix3d q_g = h * (C * gyro_density_b_ * C.transpose());
-  const Eigen::Matrix3d A = geo::skew(fold_.sum_f);
-  const Eigen::Matrix3d v_psi = -0.5 * (A * q_g);
-  const Eigen::Matrix3d v_v = (A * q_g * A.transpose()) / 3.0;
-  Q_n_.block<3, 3>(kPos, kPos) += (h * h / 3.0) * q_a;
-  Q_n_.block<3, 3>(kPos, kVel) += (h / 2.0) * q_a;
-  Q_n_.block<3, 3>(kVel, kPos) += (h / 2.0) * q_a;
-  Q_n_.block<3, 3>(kVel, kVel) += q_a + v_v;
-  Q_gyro_.block<3, 3>(kVel, kVel) += v_v;
-  for (NavCov* Q : {&Q_n_, &Q_gyro_}) {
-    Q->block<3, 3>(kVel, kPsi) += v_psi;
-    Q->block<3, 3>(kPsi, kVel) += v_psi.transpose();
-    Q->block<3, 3>(kPsi, kPsi) += q_g;
+  const Eigen::Matrix3d gyro = (sum_C_ * gyro_noise_b_) / std::sqrt(h);  // q = h C N N' C'
+  const Eigen::Matrix3d accel = (sum_C_ * accel_noise_b_) / std::sqrt(h);
+  const Eigen::Matrix3d sum_f_cross = geo::skew(fold_.sum_f);
+  const Eigen::Matrix3d q_g = gyro * gyro.transpose();
+  add_accel_noise(accel * accel.transpose(), h, Q_n_);
+  add_gyro_noise(q_g, sum_f_cross, Q_n_);
+  add_gyro_noise(q_g, sum_f_cross, Q_gyro_);
+  if (!splits_) return;
+  for (int axis = 0; axis < 3; ++axis) {
+    add_gyro_noise(gyro.col(axis) * gyro.col(axis).transpose(), sum_f_cross, Q_axes_[static_cast<std::size_t>(axis)]);
+    add_accel_noise(accel.col(axis) * accel.col(axis).transpose(), h, Q_axes_[static_cast<std::size_t>(3 + axis)]);
   }
 }
 
@@ -110,11 +130,11 @@ void TransitionAccumulator::fold(const Eigen::Matrix3d& gravity_gradient) {
   if (!(fold_.h > 0.0)) return;
   fold_.advance(Phi_n_, gravity_gradient, earth_rate_);
   add_sensor_columns();
-  for (NavCov* Q : {&Q_n_, &Q_gyro_}) {
-    fold_.advance(*Q, gravity_gradient, earth_rate_);
-    Q->transposeInPlace();
-    fold_.advance(*Q, gravity_gradient, earth_rate_);
-  }
+  for_each_covariance([&](NavCov& Q) {
+    fold_.advance(Q, gravity_gradient, earth_rate_);
+    Q.transposeInPlace();
+    fold_.advance(Q, gravity_gradient, earth_rate_);
+  });
   add_white_noise();
   elapsed_ += fold_.h;
   clear_pending();

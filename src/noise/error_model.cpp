@@ -99,17 +99,18 @@ std::vector<std::string> ImuErrorModel::members() const {
   return names;
 }
 
-ImuErrorModel ImuErrorModel::with_white_noise_scaled(Sensor sensor, double factor) const {
+ImuErrorModel ImuErrorModel::with_white_noise_scaled(Sensor sensor, const Eigen::Vector3d& factors) const {
   ImuErrorModel scaled = *this;
-  if (factor == 1.0) return scaled;  // a process that rounds its samples is kept
-  for (auto& axis : sensor == Sensor::kGyro ? scaled.gyro_ : scaled.accel_)
-    for (ProcessPtr& process : axis)
+  for (int axis = 0; axis < 3; ++axis) {
+    if (factors(axis) == 1.0) continue;  // a process that rounds its samples is kept
+    for (ProcessPtr& process : (sensor == Sensor::kGyro ? scaled.gyro_ : scaled.accel_)[static_cast<std::size_t>(axis)])
       if (const double density = white_for_filter(*process); density > 0.0) {
         const std::optional<Share> share = process->share();
         const double own = std::sqrt(density) / (share ? std::abs(share->weight) : 1.0);
-        process = make_white_noise(own * factor, sensor);
+        process = make_white_noise(own * factors(axis), sensor);
         if (share) process = make_share(process, share->member, share->weight, sensor);
       }
+  }
   return scaled;
 }
 

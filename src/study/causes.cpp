@@ -74,7 +74,7 @@ Fit fit(const Excerpt& excerpt, const Setup& stated, const CauseHypothesis* hypo
   Setup setup = as_described(stated);
   if (hypothesis != nullptr) hypothesis->apply(changed, setup);
   for (const noise::Sensor sensor : {noise::Sensor::kGyro, noise::Sensor::kAccel})
-    setup.model = setup.model.with_white_noise_scaled(sensor, noise);
+    setup.model = setup.model.with_white_noise_scaled(sensor, Eigen::Vector3d::Constant(noise));
   if (earlier != nullptr) {
     setup.start = earlier->start;
     setup.start_sensor_errors = earlier->start_sensor_errors;

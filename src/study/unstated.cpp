@@ -195,10 +195,12 @@ void PreparedMission::note_adaptations() {
   note("noise_adapted",
        fmt::format(
            "Squared innovations are {:.2g} times what the stated noise predicts. Fitted and used in its place: gyro noise "
-           "times {:.3g}, accelerometer noise times {:.3g}, GNSS sigmas times {:.3g} horizontally and {:.3g} vertically "
+           "times {:.3g}, {:.3g}, {:.3g} (x, y, z), accelerometer noise times {:.3g}, {:.3g}, {:.3g}, GNSS sigmas times {:.3g} "
+           "horizontally and {:.3g} vertically "
            "with correlated errors of {:.2g} and {:.2g} m, correlation time {:.3g} s. `noise: stated` keeps what is stated.",
-           *noise_ratio_, a.gyro_factor, a.accel_factor, a.gnss_scale.horizontal, a.gnss_scale.vertical,
-           a.correlated_gnss.horizontal_m, a.correlated_gnss.vertical_m, a.correlated_gnss.time_s));
+           *noise_ratio_, a.gyro_factors.x(), a.gyro_factors.y(), a.gyro_factors.z(), a.accel_factors.x(), a.accel_factors.y(),
+           a.accel_factors.z(), a.gnss_scale.horizontal, a.gnss_scale.vertical, a.correlated_gnss.horizontal_m,
+           a.correlated_gnss.vertical_m, a.correlated_gnss.time_s));
 }
 
 }  // namespace coast::study

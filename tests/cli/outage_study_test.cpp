@@ -186,7 +186,7 @@ TEST(OutageStudy, EstimatesTheNoiseOfTheRecording) {
   const fs::path made = simulated_recording(scenario, folder.path());
   noise::ImuErrorModel quiet = noise::ImuErrorModel::from(io::load_yaml(made / "error_model.yaml"));
   for (const noise::Sensor sensor : {noise::Sensor::kGyro, noise::Sensor::kAccel})
-    quiet = quiet.with_white_noise_scaled(sensor, 0.1);
+    quiet = quiet.with_white_noise_scaled(sensor, Eigen::Vector3d::Constant(0.1));
   write(made / "quiet.yaml", quiet.yaml());
   write(made / "study.yaml", R"(
 run: run.yaml

@@ -244,6 +244,26 @@ TEST(Diagnosis, WhatIsFoundHoldsOnHeldOutBlocks) {
   EXPECT_NEAR(*d.findings.front().held_out_gain, d.held_out->gain, 1e-6);  // there is no other
 }
 
+// Vibration shakes one axis more than another. With one factor for all three the rest of it would be told as something else.
+TEST(Diagnosis, NoiseOfOneAxisIsFoundAsNoiseOfThatAxis) {
+  MissionInput input = test::honest_mission(12);
+  constexpr double kTimes = 6.0;
+  const double density = std::sqrt(input.setup.model.white_density(noise::Sensor::kGyro, 1).value);
+  std::mt19937_64 engine(12);
+  std::normal_distribution<double> normal;
+  for (record::ImuSample& sample : input.imu.samples)
+    sample.dtheta.y() += density * std::sqrt((kTimes * kTimes - 1.0) * sample.dt) * normal(engine);
+  const Diagnosis d = diagnose::diagnose(input, kWithoutTwins, {});
+  EXPECT_TRUE(d.findings.empty()) << names(d);
+  const NoiseFinding* f = noise_named(d, "imu_white_noise", "gyro", "");
+  ASSERT_NE(f, nullptr) << names(d);
+  ASSERT_TRUE(f->by_axis.has_value());
+  EXPECT_NEAR(f->by_axis->y() / kTimes, 1.0, 0.3);
+  EXPECT_LT(f->by_axis->x(), 2.0);
+  EXPECT_LT(f->by_axis->z(), 2.0);
+  EXPECT_NEAR(d.after.nis, 1.0, 0.1);
+}
+
 // A stationary first-order process by its difference equation, sigma 2e-3 rad/s over 30 s: ten times the white noise's density.
 TEST(Diagnosis, AWanderingBiasIsFoundAsNoise) {
   MissionInput input = test::honest_mission(8);

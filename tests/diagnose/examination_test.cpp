@@ -61,7 +61,7 @@ MissionInput mission_led_by_fixes() {
   estimate::NoiseAdjustment noise;
   noise.gnss_scale = {.horizontal = 0.1, .vertical = 0.1, .velocity = 1.0};
   noise.correlated_gnss = {.horizontal_m = 0.02, .vertical_m = 0.04, .time_s = 5.0};
-  noise.gyro_factor = 3.0;
+  noise.gyro_factors.setConstant(3.0);
   noise.accel_factor = 100.0;
   input.setup.model = estimate::adjusted(input.setup.model, noise);
   input.setup.filter = estimate::adjusted(input.setup.filter, noise);
@@ -234,7 +234,8 @@ TEST(Examination, DrawsHoldWhereCovariancesDo) {
   EXPECT_EQ(same.tracks.front().null_largest, drawn.tracks.front().null_largest);
   EXPECT_EQ(same.disturbances.score[0].bottomRows(20), drawn.disturbances.score[0].bottomRows(20));
   EXPECT_NE(same.disturbances.score[0].row(0), drawn.disturbances.score[0].row(0));
-  other.setup.model = estimate::adjusted(other.setup.model, {.gnss_scale = {}, .correlated_gnss = {}, .gyro_factor = 2.0});
+  other.setup.model =
+      estimate::adjusted(other.setup.model, {.gnss_scale = {}, .correlated_gnss = {}, .gyro_factors = {2.0, 2.0, 2.0}});
   Examination noisier = Examined(other).examine(0);
   EXPECT_FALSE(noisier.take_draws_of(drawn));
   EXPECT_EQ(noisier.null_score.cols(), 0);

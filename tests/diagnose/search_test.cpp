@@ -59,7 +59,7 @@ TEST(Explanation, IsAValue) {
   b.noise.emplace();
   EXPECT_FALSE(a == b);
   EXPECT_NE(a.hash(), b.hash());
-  b.noise->gyro_factor = 2.0;
+  b.noise->gyro_factors.y() = 2.0;
   a.noise.emplace();
   EXPECT_FALSE(a == b);
   b = a;

@@ -49,7 +49,7 @@ TEST(TurnOn, AConstantThatFollowsTheForceIsNotABias) {
 TEST(Diagnosis, WhatIsImplausibleIsFoundWhereNothingElseExplainsIt) {
   constexpr double kCoefficient = 1e-3;
   MissionInput input = test::honest_mission(23);
-  input.setup.model = input.setup.model.with_white_noise_scaled(noise::Sensor::kGyro, 0.75);
+  input.setup.model = input.setup.model.with_white_noise_scaled(noise::Sensor::kGyro, Eigen::Vector3d::Constant(0.75));
   for (record::ImuSample& sample : input.imu.samples) sample.dtheta.z() += kCoefficient * sample.dv.x();
   const Diagnosis d = diagnose::diagnose(input, kWithoutTwins, {});
   const Finding* f = only(d, "gyro_g_sensitivity", "zx");

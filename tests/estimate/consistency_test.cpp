@@ -39,8 +39,8 @@ DrawnImu draw_imu(const record::ImuRecording& truth, const StateLayout& layout, 
     b.process->driving_noise(dt, Eigen::Map<Eigen::MatrixXd>(&q(b.offset), 1, 1));
   }
   const Eigen::VectorXd drive = q.cwiseSqrt();
-  const Eigen::Vector3d gyro_white = (layout.gyro_density_b().diagonal() * dt).cwiseSqrt();
-  const Eigen::Vector3d accel_white = (layout.accel_density_b().diagonal() * dt).cwiseSqrt();
+  const Eigen::Vector3d gyro_white = layout.gyro_noise_b().diagonal() * std::sqrt(dt);
+  const Eigen::Vector3d accel_white = layout.accel_noise_b().diagonal() * std::sqrt(dt);
   for (std::size_t k = 0; k < truth.samples.size(); ++k) {
     const Eigen::VectorXd before = x;
     x = phi.cwiseProduct(x) + drive.cwiseProduct(test::normal_vector(layout.size(), random));

@@ -46,6 +46,8 @@ class Covariance : public testing::Test {
     return r;
   }
 
+  [[nodiscard]] static Eigen::Matrix3d density(const Eigen::Matrix3d& noise) { return noise * noise.transpose(); }
+
   [[nodiscard]] Eigen::MatrixXd brute_force(Eigen::MatrixXd P, double seconds) const {
     const auto n = layout_->size();
     const Rates r = rates();
@@ -69,8 +71,8 @@ class Covariance : public testing::Test {
         F(b.offset, b.offset) = -r.beta(b.offset);
         Q(b.offset, b.offset) = r.q(b.offset);
       }
-      Q.block<3, 3>(kPsi, kPsi) = body.C_b_e * layout_->gyro_density_b() * body.C_b_e.transpose();
-      Q.block<3, 3>(kVel, kVel) = body.C_b_e * layout_->accel_density_b() * body.C_b_e.transpose();
+      Q.block<3, 3>(kPsi, kPsi) = density(body.C_b_e * layout_->gyro_noise_b());
+      Q.block<3, 3>(kVel, kVel) = density(body.C_b_e * layout_->accel_noise_b());
       const Eigen::MatrixXd F_dt = F * dt;
       const Eigen::MatrixXd Phi = Eigen::MatrixXd::Identity(n, n) + F_dt + 0.5 * F_dt * F_dt;
       P = (Phi * (P + 0.5 * dt * Q) * Phi.transpose() + 0.5 * dt * Q).eval();

@@ -108,12 +108,15 @@ class AllFree {
       return test::drawn_start(filter, recording_.truth(test::mission_start()), {}, random);
     });
   }
-  [[nodiscard]] static std::vector<double> truth() { return {kScale, kScale, 1.0, 0.04, 0.06, 5.0, 2.0, 2.0}; }
+  [[nodiscard]] static std::vector<double> truth() {
+    return {kScale, kScale, 1.0, 0.04, 0.06, 5.0, 1.0, 2.0, 3.0, 2.0, 4.0, 1.5};
+  }
   [[nodiscard]] static std::vector<double> values(const NoiseAdjustment& a) {
     const GnssScale& scale = a.gnss_scale;
     const CorrelatedGnss& gnss = a.correlated_gnss;
-    return {scale.horizontal, scale.vertical, scale.velocity, gnss.horizontal_m,
-            gnss.vertical_m,  gnss.time_s,    a.gyro_factor,  a.accel_factor};
+    return {scale.horizontal,   scale.vertical,      scale.velocity,      gnss.horizontal_m,
+            gnss.vertical_m,    gnss.time_s,         a.gyro_factors.x(),  a.gyro_factors.y(),
+            a.gyro_factors.z(), a.accel_factors.x(), a.accel_factors.y(), a.accel_factors.z()};
   }
 
  private:
@@ -128,8 +131,8 @@ class AllFree {
   }
 
   noise::ImuErrorModel model_ = test::error_model(test::kIndustrialModel);
-  noise::ImuErrorModel stated_ =
-      model_.with_white_noise_scaled(noise::Sensor::kGyro, 0.5).with_white_noise_scaled(noise::Sensor::kAccel, 0.5);
+  noise::ImuErrorModel stated_ = model_.with_white_noise_scaled(noise::Sensor::kGyro, {1.0, 1.0 / 2.0, 1.0 / 3.0})
+                                     .with_white_noise_scaled(noise::Sensor::kAccel, {1.0 / 2.0, 1.0 / 4.0, 1.0 / 1.5});
   test::Recording recording_;
 };
 
@@ -148,12 +151,12 @@ TEST(NoiseFit, EndsAtTheSameOptimumFromAnyStart) {
   const NoiseFit first = mission.fit(starting_point({}, AllFree::kAll));
   const NoiseAdjustment far{.gnss_scale = {8.0, 0.2, 4.0},
                             .correlated_gnss = {.horizontal_m = 1.0, .vertical_m = 0.002, .time_s = 60.0},
-                            .gyro_factor = 0.2,
-                            .accel_factor = 15.0};
+                            .gyro_factors = {0.2, 0.1, 0.3},
+                            .accel_factors = {15.0, 10.0, 20.0}};
   const NoiseAdjustment other{.gnss_scale = {0.1, 5.0, 0.3},
                               .correlated_gnss = {.horizontal_m = 0.003, .vertical_m = 0.5, .time_s = 1.5},
-                              .gyro_factor = 10.0,
-                              .accel_factor = 0.3};
+                              .gyro_factors = {10.0, 3.0, 10.0},
+                              .accel_factors = {0.3, 0.3, 0.2}};
   for (const NoiseAdjustment& from : {far, other}) expect_same(first, mission.fit(from), 2e-3);
 }
 

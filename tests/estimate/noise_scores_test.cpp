@@ -30,8 +30,8 @@ test::Recording wandering_recording(const noise::ImuErrorModel& model, double du
 
 /// Somewhere beside the truth, where no score is near zero.
 Eigen::VectorXd beside_the_truth() {
-  Eigen::VectorXd theta(8);
-  theta << 0.1, -0.2, 0.1, std::log(0.02), std::log(0.03), std::log(5.0), 0.3, -0.3;
+  Eigen::VectorXd theta(12);
+  theta << 0.1, -0.2, 0.1, std::log(0.02), std::log(0.03), std::log(5.0), 0.5, -0.4, 0.8, -0.5, 0.6, -0.7;
   return theta;
 }
 

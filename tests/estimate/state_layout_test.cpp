@@ -19,8 +19,8 @@ accel: {all: []}
                                      Eigen::Matrix3d::Identity(), {});
   ASSERT_EQ(layout.sensors().size(), 1U);
   EXPECT_EQ(layout.sensors()[0].name, "gyro_z ar");
-  EXPECT_NEAR(layout.gyro_density_b()(0, 0), std::pow(0.01 / 0.7, 2) / 100.0, 1e-15);
-  EXPECT_EQ(layout.gyro_density_b()(2, 2), 0.0);
+  EXPECT_NEAR(layout.gyro_noise_b()(0, 0), 0.01 / 0.7 / 10.0, 1e-15);
+  EXPECT_EQ(layout.gyro_noise_b()(2, 2), 0.0);
 }
 
 }  // namespace

@@ -149,8 +149,8 @@ ProcessResult full_result() {
   for (int i = 0; i < 20; ++i) r.sweep.push_back(outage(4.0 * i, i % 2 == 0 ? 5.0 : 10.0, 0.01 + 0.001 * i));
   r.lever_arm = study::LeverArmCheck{{0.01, -0.02, 0.0}, {0.01, 0.01, 0.02}};
   estimate::NoiseFit fit;
-  fit.adjustment.gyro_factor = 38.0;
-  fit.names = {"gnss_scale_horizontal", "gyro_factor"};
+  fit.adjustment.gyro_factors.x() = 38.0;
+  fit.names = {"gnss_scale_horizontal", "gyro_factor_x"};
   fit.log_sd = {0.05, 0.1};
   r.noise_fit = fit;
   for (const std::string axis : {"x", "y", "z"}) {
@@ -445,7 +445,7 @@ TEST_F(PageTest, NoiseFitIsSaidInASentence) {
   const report::Page page = make(full_result());
   const auto& notes = section(page, "innovations")->notes;
   ASSERT_EQ(notes.size(), 1U);
-  EXPECT_EQ(notes[0].text, "For this recording the gyro noise of the error model is 38 times too small.");
+  EXPECT_EQ(notes[0].text, "For this recording the white noise of gyro x is 38 times too small.");
 }
 
 TEST_F(PageTest, TwoProcessesOfOneKindAndMisalignmentsAreToldApart) {

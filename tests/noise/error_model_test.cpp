@@ -75,7 +75,10 @@ accel: {all: []}
 }
 
 TEST(ErrorModel, ScalesTheWhiteNoiseOfOneSensor) {
-  const auto scaled = model_of(kModel).with_white_noise_scaled(Sensor::kGyro, 3.0);
+  const auto model = model_of(kModel);
+  const auto scaled = model.with_white_noise_scaled(Sensor::kGyro, {1.0, 2.0, 3.0});
+  EXPECT_EQ(scaled.white_density(Sensor::kGyro, 0).value, model.white_density(Sensor::kGyro, 0).value);
+  EXPECT_NEAR(scaled.white_density(Sensor::kGyro, 1).value, 4.0 * model.white_density(Sensor::kGyro, 1).value, 1e-20);
   EXPECT_NEAR(std::sqrt(scaled.white_density(Sensor::kGyro, 2).value), 1.5e-4, 1e-17);
   EXPECT_NEAR(scaled.white_density(Sensor::kAccel, 1).value, 3.6e-7, 1e-20);
   EXPECT_NEAR(scaled.bias_sd(Sensor::kAccel, 0), 5e-3, 1e-16);

@@ -65,9 +65,9 @@ rate_hz: 100
 gyro: {all: [{process: quantisation, step: 0.1, unit: deg/s}, {process: quantisation, step: 1, unit: arcsec}]}
 accel: {all: []}
 )");
-  const auto same = model.with_white_noise_scaled(Sensor::kGyro, 1.0);
+  const auto same = model.with_white_noise_scaled(Sensor::kGyro, Eigen::Vector3d::Constant(1.0));
   EXPECT_EQ(same.yaml(), model.yaml());
-  const auto scaled = model.with_white_noise_scaled(Sensor::kGyro, 3.0);
+  const auto scaled = model.with_white_noise_scaled(Sensor::kGyro, Eigen::Vector3d::Constant(3.0));
   const double before = model.white_density(Sensor::kGyro, 0).value;
   EXPECT_NEAR(scaled.white_density(Sensor::kGyro, 0).value, 9.0 * before, 1e-14 * 9.0 * before);
   EXPECT_EQ(scaled.axes(Sensor::kGyro)[0][0]->rounding(), std::nullopt);

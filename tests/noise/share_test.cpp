@@ -50,7 +50,7 @@ TEST(Share, IsWrittenAndReadAgain) {
 }
 
 TEST(Share, StaysOneWhenWhiteNoiseIsScaled) {
-  const ImuErrorModel scaled = shared_model().with_white_noise_scaled(Sensor::kGyro, 3.0);
+  const ImuErrorModel scaled = shared_model().with_white_noise_scaled(Sensor::kGyro, Eigen::Vector3d::Constant(3.0));
   EXPECT_EQ(scaled.members().size(), 2U);
   EXPECT_NEAR(scaled.white_density(Sensor::kGyro, 2).value, 9.0 * 0.13 * geo::kDegree * geo::kDegree, 1e-14);
 }

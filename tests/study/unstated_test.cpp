@@ -93,8 +93,8 @@ TEST(Unstated, NoiseThatInnovationsContradictIsFitted) {
   simulate::SimulatedMission recording = simulate::simulate(scenario);
   study::Setup setup = nothing_stated(scenario);
   constexpr double kTooSmall = 20.0;
-  setup.model = setup.model.with_white_noise_scaled(noise::Sensor::kGyro, 1.0 / kTooSmall)
-                    .with_white_noise_scaled(noise::Sensor::kAccel, 1.0 / kTooSmall);
+  setup.model = setup.model.with_white_noise_scaled(noise::Sensor::kGyro, Eigen::Vector3d::Constant(1.0 / kTooSmall))
+                    .with_white_noise_scaled(noise::Sensor::kAccel, Eigen::Vector3d::Constant(1.0 / kTooSmall));
   const PreparedMission mission(std::move(recording.imu), std::move(recording.gnss), setup, {});
   ASSERT_TRUE(adapted(mission, "noise_adapted"));
   ASSERT_TRUE(mission.noise_fit().has_value());

@@ -58,11 +58,12 @@ struct NoiseFinding {
   enum class Place { kNoise, kErrorModel, kEffects };
   std::string name;  ///< gnss_sd_optimistic, gnss_correlated_error, imu_white_noise, or a name of the tables
   std::string sensor;
-  std::string axis;
+  std::string axis = {};
   std::string parameter;
   std::string unit;
   double value = 0.0;
   double sd = 0.0;
+  std::optional<Eigen::Vector3d> by_axis = {};  ///< x, y, z, if they differ; `value` is their weighted mean
   double delta_log_likelihood = 0.0;
   double p_value = 1.0;
   Place place = Place::kNoise;

@@ -133,7 +133,7 @@ struct FilterResult {
 struct FilterOutputs {
   KnotStore* knots = nullptr;
   /// Each knot as stored in `knots`, with the white noise of its interval; called at the knot that ends the interval.
-  std::function<void(const Knot&, const WhiteNoise&)> closed_knots = {};
+  std::function<void(const Knot&, const AxisNoise&)> closed_knots = {};
   record::EpochSink epochs;                          ///< filtered state at IMU epochs
   std::function<void(const FilterState&)> at_knots;  ///< before the knot's updates
   /// Every measurement, and whether it was used; called at the next knot. Not for carrier phases and heading hold.

@@ -13,11 +13,11 @@ namespace coast::estimate {
 struct NoiseAdjustment {
   GnssScale gnss_scale;
   CorrelatedGnss correlated_gnss;
-  double gyro_factor = 1.0;   ///< on the gyro's white-noise density (standard deviation)
-  double accel_factor = 1.0;  ///< on the accelerometer's
+  Eigen::Vector3d gyro_factors = Eigen::Vector3d::Ones();   ///< on the gyros' white-noise densities (standard deviation)
+  Eigen::Vector3d accel_factors = Eigen::Vector3d::Ones();  ///< on the accelerometers'
 };
 
-/// How far a fit goes. Its cost with eight parameters: about 10, 20 to 40, 60 and more passes of the filter.
+/// How far a fit goes. Its cost with twelve parameters: about 10, 25 to 45, 80 and more passes of the filter.
 enum class FitPrecision {
   kPreliminary,  ///< to a tenth of a sigma, without log_sd and a second round
   kSearch,       ///< to a twentieth of a sigma: steps of a search that compares likelihoods of whole runs
@@ -59,8 +59,10 @@ struct NoiseFit {
 [[nodiscard]] NoiseAdjustment starting_point(const FilterOptions& options, const NoiseFitChoice& choice);
 
 /// Maximum likelihood of the innovations (prediction-error decomposition; Harvey 1989, section 3.4) over the logarithms of the
-/// free parameters, by Newton steps with exact scores: each needs a filter pass and a backward pass over its knots. The gate is
-/// disabled while fitting; measurements that the final filter then rejects are left out and the fit is repeated once.
+/// free parameters; with the prior that the factors of a triad's axes are alike to about a factor of two, since not every
+/// motion shows the noise of every axis. By Newton steps with exact scores: each needs a filter pass and a backward pass over
+/// its knots. The gate is disabled while fitting; measurements that the final filter then rejects are left out and the fit is
+/// repeated once.
 /// @param from   start of the search; parameters that are not free keep their value
 /// @param start  state at the first epoch, covariance from ForwardFilter::initial_state
 /// @throws NumericalError  the filter fails at the start values

@@ -93,9 +93,9 @@ class StateLayout {
   [[nodiscard]] const std::vector<int>& aids() const { return aids_; }
   /// The carrier slots are the last states, [carrier_slots(), size()).
   [[nodiscard]] int carrier_slots() const { return carrier_slots_; }
-  /// White-noise densities in body axes, [signal]^2/Hz.
-  [[nodiscard]] const Eigen::Matrix3d& gyro_density_b() const { return gyro_density_b_; }
-  [[nodiscard]] const Eigen::Matrix3d& accel_density_b() const { return accel_density_b_; }
+  /// A column per axis of the sensor: its direction in b, times the root of its white-noise density, [signal]/sqrt(Hz).
+  [[nodiscard]] const Eigen::Matrix3d& gyro_noise_b() const { return gyro_noise_b_; }
+  [[nodiscard]] const Eigen::Matrix3d& accel_noise_b() const { return accel_noise_b_; }
   /// Shortest correlation time of any sensor state, s; infinity if all are constant. Auxiliary states are propagated exactly
   /// over any interval.
   [[nodiscard]] double shortest_time() const { return shortest_time_; }
@@ -127,8 +127,8 @@ class StateLayout {
   std::optional<int> gnss_error_;
   std::vector<int> aids_;
   int carrier_slots_ = kNav;
-  Eigen::Matrix3d gyro_density_b_ = Eigen::Matrix3d::Zero();
-  Eigen::Matrix3d accel_density_b_ = Eigen::Matrix3d::Zero();
+  Eigen::Matrix3d gyro_noise_b_ = Eigen::Matrix3d::Zero();
+  Eigen::Matrix3d accel_noise_b_ = Eigen::Matrix3d::Zero();
   double shortest_time_ = 0.0;
 };
 

@@ -2,6 +2,7 @@
 // The error-state transition between knots, composed from IMU samples.
 
 #include <Eigen/Core>
+#include <algorithm>
 #include <array>
 #include <vector>
 
@@ -13,11 +14,9 @@ namespace coast::estimate {
 using NavRows = Eigen::Matrix<double, kNav, Eigen::Dynamic, Eigen::RowMajor>;
 using NavCov = Eigen::Matrix<double, kNav, kNav, Eigen::RowMajor>;
 
-/// Covariance that white noise adds to the navigation states over an interval, per sensor type.
-struct WhiteNoise {
-  NavCov gyro;
-  NavCov accel;
-};
+/// Covariance that the white noise of each axis adds to the navigation states over an interval: gyro x, y, z, accelerometer
+/// x, y, z, axes of the sensor.
+using AxisNoise = std::array<NavCov, 6>;
 
 /// Contribution of one IMU sample, available from the strapdown.
 struct SampleDynamics {
@@ -70,11 +69,13 @@ class TransitionAccumulator {
   TransitionAccumulator(const StateLayout& layout, double earth_rate);
 
   void reset();
-  /// Sets the white noise from now on, body axes, [(rad/s)^2/Hz], [(m/s^2)^2/Hz]; until then that of the layout is used.
-  void set_white_noise(const Eigen::Matrix3d& gyro_density_b, const Eigen::Matrix3d& accel_density_b) {
-    gyro_density_b_ = gyro_density_b;
-    accel_density_b_ = accel_density_b;
+  /// Sets the white noise from now on, as StateLayout::gyro_noise_b() has it; until then that of the layout is used.
+  void set_white_noise(const Eigen::Matrix3d& gyro_noise_b, const Eigen::Matrix3d& accel_noise_b) {
+    gyro_noise_b_ = gyro_noise_b;
+    accel_noise_b_ = accel_noise_b;
   }
+  /// Accumulates the white noise of each axis too.
+  void split_white_noise() { splits_ = true; }
   void add(const SampleDynamics& sample);
   [[nodiscard]] bool substep_due() const { return substep_due(fold_.h); }
   /// Folds what is pending. @param gravity_gradient dg/dr at the position, 1/s^2
@@ -83,15 +84,18 @@ class TransitionAccumulator {
   /// For three navigation states that are reset at the end of the interval: removes their dependence on the interval.
   void forget(int first_state) {
     Phi_n_.middleRows<3>(first_state).setZero();
-    for (NavCov* Q : {&Q_n_, &Q_gyro_}) {
-      Q->middleRows<3>(first_state).setZero();
-      Q->middleCols<3>(first_state).setZero();
-    }
+    for_each_covariance([&](NavCov& Q) {
+      Q.middleRows<3>(first_state).setZero();
+      Q.middleCols<3>(first_state).setZero();
+    });
   }
 
   [[nodiscard]] const NavRows& Phi_n() const { return Phi_n_; }
   [[nodiscard]] const NavCov& Q_n() const { return Q_n_; }
-  [[nodiscard]] WhiteNoise white_noise() const { return {Q_gyro_, Q_n_ - Q_gyro_}; }
+  /// The part of Q_n() that is the gyros'.
+  [[nodiscard]] const NavCov& Q_gyro() const { return Q_gyro_; }
+  /// Its parts by axis; zero without split_white_noise().
+  [[nodiscard]] const AxisNoise& Q_axes() const { return Q_axes_; }
   [[nodiscard]] double elapsed() const { return elapsed_; }
 
   /// P <- Phi P Phi' + Q over what has been folded since reset(), every block of states included. The effect of driving noise
@@ -104,13 +108,21 @@ class TransitionAccumulator {
   void add_driven_covariance(Eigen::MatrixXd& P) const;
   void add_white_noise();
   void clear_pending();
+  template <typename Do>
+  void for_each_covariance(const Do& act) {
+    act(Q_n_);
+    act(Q_gyro_);
+    if (splits_) std::ranges::for_each(Q_axes_, act);
+  }
 
   const StateLayout& layout_;
   double earth_rate_;
-  Eigen::Matrix3d gyro_density_b_, accel_density_b_;
+  Eigen::Matrix3d gyro_noise_b_, accel_noise_b_;
   NavRows Phi_n_;
   NavCov Q_n_;
-  NavCov Q_gyro_;  ///< the gyros' part of Q_n_
+  NavCov Q_gyro_;
+  AxisNoise Q_axes_;
+  bool splits_ = false;
   int gyro_states_ = 0;
   Eigen::RowVectorXd output_;  ///< h Phi(elapsed) of every sensor state: current output per unit of the state at the knot
   Eigen::RowVectorXd middle_;  ///< the same in the middle of the fold

@@ -30,9 +30,9 @@ class ImuErrorModel {
   /// Names of the IMUs whose errors have a share in the model, in order of first appearance.
   [[nodiscard]] std::vector<std::string> members() const;
   [[nodiscard]] const std::string& sensor_name() const { return sensor_name_; }
-  /// The same model with every white-noise density of one sensor scaled (`factor` applies to the standard deviation). A filter
-  /// treats rounding of samples as white noise; with a factor other than 1 it is converted to white noise.
-  [[nodiscard]] ImuErrorModel with_white_noise_scaled(Sensor sensor, double factor) const;
+  /// The same model with every white-noise density of one sensor scaled (factors of x, y and z apply to the standard
+  /// deviation). A filter treats rounding of samples as white noise; with a factor other than 1 it is converted to white noise.
+  [[nodiscard]] ImuErrorModel with_white_noise_scaled(Sensor sensor, const Eigen::Vector3d& factors) const;
   /// The model of an IMU whose calibration was taken out of the recording: constant scale factors and misalignments keep the
   /// uncertainty of the calibration, and a tenth of their own for temperature and age; none is added or made larger.
   [[nodiscard]] ImuErrorModel with_gains_known(const record::ImuCalibration& calibration) const;

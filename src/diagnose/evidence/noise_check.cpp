@@ -1,5 +1,7 @@
 #include "evidence/noise_check.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -41,15 +43,13 @@ struct ParameterWords {
   const char* unit;
   bool is_factor;
 };
-constexpr std::array<ParameterWords, 8> kWords{{
+constexpr std::array<ParameterWords, 6> kWords{{
     {"gnss_scale_horizontal", "gnss_sd_optimistic", "gnss", "horizontal", "factor", "1", true},
     {"gnss_scale_vertical", "gnss_sd_optimistic", "gnss", "d", "factor", "1", true},
     {"gnss_scale_velocity", "gnss_sd_optimistic", "gnss", "velocity", "factor", "1", true},
     {"correlated_horizontal_m", "gnss_correlated_error", "gnss", "horizontal", "sigma", "m", false},
     {"correlated_vertical_m", "gnss_correlated_error", "gnss", "d", "sigma", "m", false},
     {"correlated_time_s", "gnss_correlated_error", "gnss", "horizontal", "correlation_time", "s", false},
-    {"gyro_factor", "imu_white_noise", "gyro", "", "factor", "1", true},
-    {"accel_factor", "imu_white_noise", "accel", "", "factor", "1", true},
 }};
 
 double value_of(const estimate::NoiseAdjustment& a, std::string_view parameter) {
@@ -58,13 +58,38 @@ double value_of(const estimate::NoiseAdjustment& a, std::string_view parameter) 
   if (parameter == "gnss_scale_velocity") return a.gnss_scale.velocity;
   if (parameter == "correlated_horizontal_m") return a.correlated_gnss.horizontal_m;
   if (parameter == "correlated_vertical_m") return a.correlated_gnss.vertical_m;
-  if (parameter == "correlated_time_s") return a.correlated_gnss.time_s;
-  return parameter == "gyro_factor" ? a.gyro_factor : a.accel_factor;
+  return a.correlated_gnss.time_s;
+}
+
+constexpr double kBeyondChance = 3.0;  // sd
+
+/// The white noise of a sensor's three axes: one factor if they do not differ significantly. Nothing if it is as stated.
+std::optional<NoiseFinding> of_triad(const estimate::NoiseFit& fit, const char* sensor, const Eigen::Vector3d& factors,
+                                     double p_value) {
+  const auto first = std::ranges::find(fit.names, fmt::format("{}_factor_x", sensor)) - fit.names.begin();
+  Eigen::Vector3d sd;
+  for (int axis = 0; axis < 3; ++axis) sd(axis) = fit.log_sd[static_cast<std::size_t>(first + axis)];
+  const Eigen::Vector3d logs = factors.array().log(), information = sd.cwiseAbs2().cwiseInverse();
+  if (!(information.sum() > 0.0)) return std::nullopt;
+  const double mean = logs.dot(information) / information.sum();
+  const double mean_sd = 1.0 / std::sqrt(information.sum());
+  const Eigen::Vector3d beside = (logs.array() - mean).abs() / sd.array();  // none where the data know nothing
+  const bool alike = beside.maxCoeff() < kBeyondChance;
+  if (alike && std::abs(mean) < kBeyondChance * mean_sd) return std::nullopt;
+  NoiseFinding finding{.name = "imu_white_noise",
+                       .sensor = sensor,
+                       .parameter = "factor",
+                       .unit = "1",
+                       .value = std::exp(mean),
+                       .sd = std::exp(mean) * mean_sd,
+                       .delta_log_likelihood = fit.log_likelihood_after - fit.log_likelihood_before,
+                       .p_value = p_value};
+  if (!alike) finding.by_axis = factors;
+  return finding;
 }
 
 /// Those parameters of the fit that differ significantly from neutral.
 std::vector<NoiseFinding> findings_of(const estimate::NoiseFit& fit, double p_value) {
-  constexpr double kBeyondChance = 3.0;
   std::vector<NoiseFinding> findings;
   for (std::size_t i = 0; i < fit.names.size(); ++i) {
     const auto words = std::ranges::find(kWords, fit.names[i], &ParameterWords::parameter);
@@ -74,15 +99,24 @@ std::vector<NoiseFinding> findings_of(const estimate::NoiseFit& fit, double p_va
     const bool is_told = words->is_factor ? std::abs(std::log(value)) > kBeyondChance * fit.log_sd[i]
                                           : fit.needed[i] > 0.5 * kBeyondChance * kBeyondChance;
     if (!is_told) continue;
-    findings.push_back({words->name, words->sensor, words->axis, words->called, words->unit, value,
-                        std::isfinite(fit.log_sd[i]) ? value * fit.log_sd[i] : 0.0,
-                        fit.log_likelihood_after - fit.log_likelihood_before, p_value});
+    findings.push_back({.name = words->name,
+                        .sensor = words->sensor,
+                        .axis = words->axis,
+                        .parameter = words->called,
+                        .unit = words->unit,
+                        .value = value,
+                        .sd = std::isfinite(fit.log_sd[i]) ? value * fit.log_sd[i] : 0.0,
+                        .delta_log_likelihood = fit.log_likelihood_after - fit.log_likelihood_before,
+                        .p_value = p_value});
     if (words->is_factor) continue;
     findings.back().time_s = fit.adjustment.correlated_gnss.time_s;
     const auto time = std::ranges::find(fit.names, "correlated_time_s") - fit.names.begin();
     if (const double log_sd = fit.log_sd[static_cast<std::size_t>(time)]; std::isfinite(log_sd))
       findings.back().time_sd_s = findings.back().time_s * log_sd;
   }
+  for (const auto& found : {of_triad(fit, "gyro", fit.adjustment.gyro_factors, p_value),
+                            of_triad(fit, "accel", fit.adjustment.accel_factors, p_value)})
+    if (found) findings.push_back(*found);
   return findings;
 }
 

@@ -7,9 +7,20 @@ namespace coast::diagnose {
 
 namespace {
 
-std::array<double, 8> numbers_of(const estimate::NoiseAdjustment& a) {
-  return {a.gnss_scale.horizontal,      a.gnss_scale.vertical,    a.gnss_scale.velocity, a.correlated_gnss.horizontal_m,
-          a.correlated_gnss.vertical_m, a.correlated_gnss.time_s, a.gyro_factor,         a.accel_factor};
+std::array<double, 12> numbers_of(const estimate::NoiseAdjustment& a) {
+  const auto& [scale, correlated, gyro, accel] = a;
+  return {scale.horizontal,
+          scale.vertical,
+          scale.velocity,
+          correlated.horizontal_m,
+          correlated.vertical_m,
+          correlated.time_s,
+          gyro.x(),
+          gyro.y(),
+          gyro.z(),
+          accel.x(),
+          accel.y(),
+          accel.z()};
 }
 
 bool is_same(const std::optional<estimate::NoiseAdjustment>& a, const std::optional<estimate::NoiseAdjustment>& b) {

@@ -151,9 +151,12 @@ std::string sentence(const NoiseFinding& f) {
   if (f.name == "gnss_correlated_error")
     return fmt::format("The {} errors of the fixes last: {} over about {:.2g} s.", fix_errors(f.axis),
                        plain_size(f.value, f.sd, f.unit, Site::kGnss), f.time_s);
-  if (f.name == "imu_white_noise")
-    return fmt::format("The noise of the {} is {:.2g} times what is stated.", f.sensor == "gyro" ? "gyros" : "accelerometers",
-                       f.value);
+  if (f.name == "imu_white_noise") {
+    const char* sensors = f.sensor == "gyro" ? "gyros" : "accelerometers";
+    if (!f.by_axis) return fmt::format("The noise of the {} is {:.2g} times what is stated.", sensors, f.value);
+    return fmt::format("The noise of the {} x, y, z is {:.2g}, {:.2g} and {:.2g} times what is stated.", sensors,
+                       f.by_axis->x(), f.by_axis->y(), f.by_axis->z());
+  }
   const Site site = f.sensor == "gyro" ? Site::kGyro : Site::kAccel;
   const std::string time = f.time_s > 0.0 ? fmt::format(" over about {:.2g} s", f.time_s) : std::string();
   return fmt::format("{} {}: {} ({} {}{}).", f.sensor == "gyro" ? "Gyro" : "Accelerometer", f.axis, without_stop(f.meaning),

@@ -87,6 +87,9 @@ Json finding_json(const diagnose::Finding& f, double start_s, double end_s) {
 Json noise_json(const diagnose::NoiseFinding& f, double start_s, double end_s) {
   Json j = {{"name", f.name}, {"sensor", f.sensor}, {"axis", f.axis}, {"t_start_s", start_s}, {"t_end_s", end_s}};
   j["parameters"] = Json::array({{{"name", f.parameter}, {"value", f.value}, {"std", f.sd}, {"unit", f.unit}}});
+  if (f.by_axis)
+    for (int axis = 0; axis < 3; ++axis)
+      j["parameters"].push_back(parameter_json(fmt::format("{}_{}", f.parameter, "xyz"[axis]), (*f.by_axis)(axis), f.unit));
   if (f.time_s > 0.0) {
     j["parameters"].push_back(parameter_json("correlation_time", f.time_s, "s"));
     if (f.time_sd_s > 0.0) j["parameters"].back()["std"] = f.time_sd_s;
@@ -125,6 +128,8 @@ std::string explanation(const diagnose::NoiseFinding& f) {
                                        : fmt::format("{} {}:", f.meaning, f.equation);
   text += fmt::format(" {} = {:.3g}", f.parameter, f.value);
   if (f.sd > 0.0) text += fmt::format(" +- {:.2g}", f.sd);
+  if (f.by_axis)
+    text += fmt::format(" in the mean of x, y, z ({:.3g}, {:.3g}, {:.3g})", f.by_axis->x(), f.by_axis->y(), f.by_axis->z());
   text += f.unit == "1" ? " times what is stated" : fmt::format(" {}", f.unit);
   text += f.time_s > 0.0 ? fmt::format(", T about {:.2g} s.", f.time_s) : ".";
   return text + other_readings(f.alternatives, f.separating_manoeuvre);

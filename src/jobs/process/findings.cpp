@@ -120,9 +120,12 @@ void doubt_lever_arm(const Work& work, ProcessResult& result) {
 
 namespace {
 
+std::string three(const Eigen::Vector3d& v) {
+  return fmt::format("[{:.17g}, {:.17g}, {:.17g}]", v.x(), v.y(), v.z());
+}
+
 std::string drift_factors(const study::DriftFactors& drift) {
   if (drift.largest() == 1.0) return "";
-  const auto three = [](const Eigen::Vector3d& v) { return fmt::format("[{:.17g}, {:.17g}, {:.17g}]", v.x(), v.y(), v.z()); };
   return fmt::format(", drift_factors: {{gyro: {}, accel: {}}}", three(drift.gyro), three(drift.accel));
 }
 
@@ -135,14 +138,13 @@ void note_estimates(const Work& work, const ProcessResult& result) {
                                                     fmt::format("{:.17g}", work.mission.mission().time_offset_s));
   const Eigen::Vector3d& arm = work.mission.mission().lever_arm_b;
   if (work.mission.options().auxiliary.lever_arm_sd_m > 0.0)
-    work.config.root.section("imu").note_estimated("lever_arm_m",
-                                                   fmt::format("[{:.17g}, {:.17g}, {:.17g}]", arm.x(), arm.y(), arm.z()));
+    work.config.root.section("imu").note_estimated("lever_arm_m", three(arm));
   if (!result.noise_fit) return;
   const estimate::NoiseAdjustment& a = result.noise_fit->adjustment;
   const estimate::NoiseFitChoice& choice = *work.mission.setup().noise_fit;
   if (choice.imu_white_noise)
     work.config.root.section("imu").note_estimated(
-        "noise", fmt::format("{{gyro_factor: {:.17g}, accel_factor: {:.17g}{}{}}}", a.gyro_factor, a.accel_factor,
+        "noise", fmt::format("{{gyro_factor: {}, accel_factor: {}{}{}}}", three(a.gyro_factors), three(a.accel_factors),
                              drift_factors(work.mission.drift()),
                              work.mission.gain_errors_left_out() ? ", without_gain_errors: true" : ""));
   if (choice.gnss_scale)

@@ -67,8 +67,8 @@ Json noise_json(const estimate::NoiseFit& fit) {
   j["correlated_gnss"] = {{"horizontal_m", a.correlated_gnss.horizontal_m},
                           {"vertical_m", a.correlated_gnss.vertical_m},
                           {"time_s", a.correlated_gnss.time_s}};
-  j["gyro_factor"] = a.gyro_factor;
-  j["accel_factor"] = a.accel_factor;
+  j["gyro_factor"] = std::vector<double>(a.gyro_factors.begin(), a.gyro_factors.end());
+  j["accel_factor"] = std::vector<double>(a.accel_factors.begin(), a.accel_factors.end());
   j["log_likelihood"] = {fit.log_likelihood_before, fit.log_likelihood_after};
   return j;
 }

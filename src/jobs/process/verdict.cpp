@@ -204,7 +204,8 @@ void add_refused_aids(const ProcessResult& result, std::vector<Check>& checks) {
 void add_noise_fit(const ProcessResult& result, std::vector<Check>& checks) {
   if (!result.noise_fit) return;
   constexpr double kHighest = 999.0;
-  const double largest = std::max(result.noise_fit->adjustment.gyro_factor, result.noise_fit->adjustment.accel_factor);
+  const estimate::NoiseAdjustment& adjustment = result.noise_fit->adjustment;
+  const double largest = std::max(adjustment.gyro_factors.maxCoeff(), adjustment.accel_factors.maxCoeff());
   checks.push_back(
       {"imu_noise_factor", largest, kHighest, {}, fmt::format("the fit of the IMU noise ends on its bound, {:.0f}", largest)});
 }

@@ -31,6 +31,17 @@ Eigen::Vector3d positive3(const Node& node) {
   return v;
 }
 
+/// A number for all three axes, or a list of three.
+Eigen::Vector3d noise_factors(const Node& parent, std::string_view key) {
+  constexpr double kLow = 1e-3, kHigh = 1e4;
+  const std::optional<Node> node = parent.find(key);
+  if (!node || !node->is_list()) return Eigen::Vector3d::Constant(parent.number_within(key, 1.0, kLow, kHigh));
+  const Eigen::Vector3d factors = node->vector3();
+  if (!((factors.array() >= kLow).all() && (factors.array() <= kHigh).all()))
+    throw node->error(node->where(), fmt::format("three values from {} to {}", kLow, kHigh));
+  return factors;
+}
+
 GivenStart start_from(const Node& node) {
   GivenStart start;
   start.time_s = node.at("time_s").number();
@@ -60,8 +71,8 @@ NoiseKey noise_key(const Node& parent, const std::function<void(const Node&)>& g
 void read_imu_noise(const Node& imu, study::Setup& setup, estimate::NoiseFitChoice& choice) {
   const NoiseKey key = noise_key(imu, [&](const Node& given) {
     estimate::NoiseAdjustment factors;
-    factors.gyro_factor = given.number_within("gyro_factor", 1.0, 1e-3, 1e4);
-    factors.accel_factor = given.number_within("accel_factor", 1.0, 1e-3, 1e4);
+    factors.gyro_factors = noise_factors(given, "gyro_factor");
+    factors.accel_factors = noise_factors(given, "accel_factor");
     setup.model = estimate::adjusted(setup.model, factors);
     if (const auto drift = given.find("drift_factors")) {
       const study::DriftFactors factors_of{positive3(drift->at("gyro")), positive3(drift->at("accel"))};

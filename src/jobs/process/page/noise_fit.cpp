@@ -1,6 +1,7 @@
 // The noise fitted to the innovations, with the stated one.
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <cmath>
 
@@ -18,7 +19,7 @@ struct FittedParameter {
   const char* label;
   const char* unit;  ///< "" : a factor on the stated sigma
   double (*value)(const NoiseAdjustment&);
-  const char* subject;  ///< of a sentence about the factor; nullptr: no sentence
+  const char* subject;  ///< of a clause about the factor; nullptr: no clause
 };
 
 constexpr FittedParameter kParameters[] = {
@@ -34,10 +35,18 @@ constexpr FittedParameter kParameters[] = {
      [](const NoiseAdjustment& a) { return a.correlated_gnss.vertical_m; }, nullptr},
     {"correlated_time_s", "correlation time of it", "s", [](const NoiseAdjustment& a) { return a.correlated_gnss.time_s; },
      nullptr},
-    {"gyro_factor", "gyro white noise", "", [](const NoiseAdjustment& a) { return a.gyro_factor; },
-     "the gyro noise of the error model is"},
-    {"accel_factor", "accelerometer white noise", "", [](const NoiseAdjustment& a) { return a.accel_factor; },
-     "the accelerometer noise of the error model is"},
+    {"gyro_factor_x", "gyro x white noise", "", [](const NoiseAdjustment& a) { return a.gyro_factors.x(); },
+     "the white noise of gyro x is"},
+    {"gyro_factor_y", "gyro y white noise", "", [](const NoiseAdjustment& a) { return a.gyro_factors.y(); },
+     "the white noise of gyro y is"},
+    {"gyro_factor_z", "gyro z white noise", "", [](const NoiseAdjustment& a) { return a.gyro_factors.z(); },
+     "the white noise of gyro z is"},
+    {"accel_factor_x", "accelerometer x white noise", "", [](const NoiseAdjustment& a) { return a.accel_factors.x(); },
+     "the white noise of accelerometer x is"},
+    {"accel_factor_y", "accelerometer y white noise", "", [](const NoiseAdjustment& a) { return a.accel_factors.y(); },
+     "the white noise of accelerometer y is"},
+    {"accel_factor_z", "accelerometer z white noise", "", [](const NoiseAdjustment& a) { return a.accel_factors.z(); },
+     "the white noise of accelerometer z is"},
 };
 
 const FittedParameter* find(const std::string& name) {
@@ -47,12 +56,10 @@ const FittedParameter* find(const std::string& name) {
 }
 
 /// Within a factor of 2 a stated sigma is as good as usual.
-std::string sentence(const FittedParameter& parameter, double factor) {
+std::string clause(const FittedParameter& parameter, double factor) {
   constexpr double kWorthSaying = 2.0;
-  if (factor >= kWorthSaying)
-    return fmt::format("For this recording {} {} times too small.", parameter.subject, number(factor, 2));
-  if (factor <= 1.0 / kWorthSaying)
-    return fmt::format("For this recording {} {} times too large.", parameter.subject, number(1.0 / factor, 2));
+  if (factor >= kWorthSaying) return fmt::format("{} {} times too small", parameter.subject, number(factor, 2));
+  if (factor <= 1.0 / kWorthSaying) return fmt::format("{} {} times too large", parameter.subject, number(1.0 / factor, 2));
   return "";
 }
 
@@ -70,6 +77,7 @@ void add_noise_fit(const ProcessPage& page, report::Section& section) {
       "{:.1f} with this one, over {} innovations.",
       fit.log_likelihood_before, fit.log_likelihood_after, fit.innovations);
   table.columns = {{"noise", "", false}, {"factor on stated", ""}, {"value", ""}, {"unit", "", false}, {"one sigma", "%"}};
+  std::vector<std::string> clauses;
   for (std::size_t i = 0; i < fit.names.size(); ++i) {
     const FittedParameter* parameter = find(fit.names[i]);
     if (parameter == nullptr) continue;
@@ -79,11 +87,14 @@ void add_noise_fit(const ProcessPage& page, report::Section& section) {
     table.rows.push_back(cells({parameter->label, factor ? number(value) : "", factor ? "" : number(value), parameter->unit,
                                 known ? number(100.0 * fit.log_sd[i], 2) : "not determined"}));
     if (!factor) continue;
-    const std::string text = sentence(*parameter, value);
+    const std::string text = clause(*parameter, value);
     if (text.empty()) continue;
     table.rows.back()[1].verdict = report::Verdict::kWarn;
-    section.notes.push_back({report::Note::Kind::kWarning, "", text});
+    clauses.push_back(text);
   }
+  if (!clauses.empty())
+    section.notes.push_back(
+        {report::Note::Kind::kWarning, "", fmt::format("For this recording {}.", fmt::join(clauses, ", "))});
   section.tables.push_back(std::move(table));
 }
 
