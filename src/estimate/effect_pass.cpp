@@ -3,6 +3,7 @@
 #include <tbb/parallel_pipeline.h>
 
 #include <Eigen/Cholesky>
+#include <algorithm>
 #include <utility>
 
 #include "backward_recursion.hpp"
@@ -13,31 +14,49 @@ namespace coast::estimate {
 
 namespace {
 
+/// The white noise of each axis of the sensors in an interval.
+struct OwnNoise {
+  Eigen::Matrix<double, kNav, 6> w = {};  ///< effect of a constant error of the root of its density
+  OwnSlopes slopes = {};                  ///< times the noise level
+};
+
+/// Densities over those of the error model: gyro x, y, z, accelerometer x, y, z.
+Eigen::Vector<double, 6> noise_levels(const record::ImuRecording& imu, geo::GpsTime t) {
+  Eigen::Vector<double, 6> levels = Eigen::Vector<double, 6>::Ones();
+  const auto at = std::ranges::upper_bound(imu.noise, t, {}, &record::NoiseLevel::to);
+  if (at != imu.noise.end()) levels << at->gyro, at->accel;
+  return levels;
+}
+
 /// Columns of the transition: effect of a unit of every coefficient on the navigation states within an interval, with the
 /// sign of the error of a state: estimate - truth.
 class DrivenColumns {
  public:
   DrivenColumns(const Mission& mission, const StateLayout& layout, const Effects& effects)
       : mission_(mission),
+        layout_(layout),
         effects_(effects),
         navigator_(layout, mission.increments, mission.earth_rate),
-        W_(kNav, effects.size()),
+        W_(kNav, effects.size() + 6),
         gyro_b_(3, effects.size()),
         accel_b_(gyro_b_),
-        gyro_e_(gyro_b_),
-        accel_e_(gyro_b_) {}
+        gyro_e_(3, W_.cols()),
+        accel_e_(gyro_e_) {}
 
   /// From a knot to the next one.
   void over(const Knot& knot, geo::GpsTime end) {
     navigator_.set(knot.post);
     W_.setZero();
+    slopes_.setZero(6, effects_.size());
+    slopes_known_ = false;
     begin_fold();
     SampleCursor cursor{knot.next_sample, knot.remainder};
     walk(mission_.imu, cursor, end, navigator_, [&](const SampleStep& step) { take(step, cursor.next_sample); });
     close_fold();
     if (restart_at(mission_, end) != nullptr) W_.middleRows<3>(kPsi).setZero();
   }
-  [[nodiscard]] const NavRows& W() const { return W_; }
+  [[nodiscard]] NavRows W() const { return W_.leftCols(effects_.size()); }
+  [[nodiscard]] OwnNoise own_noise() const { return {W_.rightCols<6>(), slopes_}; }
 
  private:
   void take(const SampleStep& step, std::size_t next_sample) {
@@ -45,12 +64,18 @@ class DrivenColumns {
     navigator_.set_time(step.at);
     gyro_b_.setZero();
     accel_b_.setZero();
-    effects_.add_sensor_errors({step.whole ? next_sample - 1 : next_sample, dynamics.dtheta_b / dynamics.dt,
-                                dynamics.dv_b / dynamics.dt, navigator_.nav()},
-                               gyro_b_, accel_b_);
+    const SampleView sample{step.whole ? next_sample - 1 : next_sample, dynamics.dtheta_b / dynamics.dt,
+                            dynamics.dv_b / dynamics.dt, navigator_.nav()};
+    effects_.add_sensor_errors(sample, gyro_b_, accel_b_);
     const Eigen::Matrix3d C = dynamics.dt * dynamics.C_b_e;
-    gyro_e_.noalias() += C.lazyProduct(gyro_b_);
-    accel_e_.noalias() += C.lazyProduct(accel_b_);
+    gyro_e_.leftCols(effects_.size()).noalias() += C.lazyProduct(gyro_b_);
+    accel_e_.leftCols(effects_.size()).noalias() += C.lazyProduct(accel_b_);
+    gyro_e_.rightCols<6>().leftCols<3>() += C * layout_.gyro_noise_b();
+    accel_e_.rightCols<3>() += C * layout_.accel_noise_b();
+    if (!std::exchange(slopes_known_, true)) {
+      effects_.add_own_slopes(sample, slopes_);
+      slopes_ = noise_levels(mission_.imu, step.at).asDiagonal() * slopes_;
+    }
     fold_.add(dynamics);
     if (TransitionAccumulator::substep_due(fold_.h)) close_fold();
   }
@@ -69,10 +94,13 @@ class DrivenColumns {
   }
 
   const Mission& mission_;
+  const StateLayout& layout_;
   const Effects& effects_;
   Navigator navigator_;
   Fold fold_;
   NavRows W_;
+  OwnSlopes slopes_;  ///< at the first sample
+  bool slopes_known_ = false;
   Eigen::Matrix3Xd gyro_b_, accel_b_;  ///< of the current sample
   Eigen::Matrix3Xd gyro_e_, accel_e_;  ///< integrals over the fold
 };
@@ -89,12 +117,20 @@ class EffectRecursion {
         blocks_(layout),
         options_(options),
         r_(Eigen::VectorXd::Zero(effects)),
+        own_noise_(r_),
         N_cross_(Eigen::MatrixXd::Zero(layout.size(), effects)),
         N_(Eigen::MatrixXd::Zero(effects, effects)),
         null_x_(Eigen::MatrixXd::Zero(layout.size(), options.draws)),
         null_(Eigen::MatrixXd::Zero(effects, options.draws)) {}
 
-  void through_transition(const Knot& knot, const NavRows& W) {
+  void through_transition(const Knot& knot, const NavRows& W, const OwnNoise& own) {
+    const NavCov N_nav = of_states_.N().topLeftCorner<kNav, kNav>();
+    Eigen::Vector<double, 6> information;
+    for (Eigen::Index axis = 0; axis < 6; ++axis)
+      information(axis) = own.w.col(axis).dot(N_nav * own.w.col(axis)) / knot.interval;
+    const Eigen::VectorXd of_noise = own.slopes.transpose() * information;
+    own_noise_ += of_noise;
+    r_ += of_noise;
     const Eigen::MatrixXd NW = of_states_.N().leftCols<kNav>() * W;
     // W' N W + W' C + C' W, C the cross part: one product, of which half is needed.
     const auto C = N_cross_.topRows<kNav>();
@@ -128,7 +164,7 @@ class EffectRecursion {
   }
 
   [[nodiscard]] Evidence at(geo::GpsTime t) const {
-    return {t, of_states_.r(), of_states_.N(), r_, N_cross_, N_, null_x_, null_};
+    return {t, of_states_.r(), of_states_.N(), r_, own_noise_, N_cross_, N_, null_x_, null_};
   }
 
  private:
@@ -159,6 +195,7 @@ class EffectRecursion {
   BlockTransitions blocks_;
   const EffectPassOptions& options_;
   Eigen::VectorXd r_;
+  Eigen::VectorXd own_noise_;
   Eigen::MatrixXd N_cross_, N_;  ///< of N the lower triangle
   Eigen::MatrixXd null_x_, null_;
 };
@@ -173,6 +210,7 @@ AppliedUpdate silent(AppliedUpdate update) {
 struct PreparedKnot {
   Knot knot;
   NavRows W;                       ///< over the interval to the next knot; none behind the last one
+  OwnNoise own;                    ///< likewise
   std::vector<Eigen::MatrixXd> D;  ///< by update
 };
 
@@ -188,11 +226,12 @@ class Preparation {
         navigator_(layout, mission.increments, mission.earth_rate) {}
 
   [[nodiscard]] PreparedKnot of(std::size_t k) {
-    PreparedKnot prepared{.knot = knots_.at(k), .W = {}, .D = {}};
+    PreparedKnot prepared{.knot = knots_.at(k), .W = {}, .own = {}, .D = {}};
     const Knot& knot = prepared.knot;
     if (k + 1 < knots_.size()) {
       driven_.over(knot, knots_.time(k + 1));
       prepared.W = driven_.W();
+      prepared.own = driven_.own_noise();
     }
     navigator_.set(knot.post);
     const SampleCursor cursor{knot.next_sample, knot.remainder};
@@ -236,7 +275,7 @@ void effect_pass(const Mission& mission, const StateLayout& layout, const KnotSt
   const auto recur = [&](const std::pair<std::size_t, std::vector<PreparedKnot>>& chunk) {
     for (const PreparedKnot& one : chunk.second) {
       const geo::GpsTime t = one.knot.post.nav.t;
-      if (one.W.cols() > 0) recursion.through_transition(one.knot, one.W);
+      if (one.W.cols() > 0) recursion.through_transition(one.knot, one.W, one.own);
       const bool counted = !options.counts || options.counts(t);
       for (std::size_t u = one.D.size(); u-- > 0;)
         recursion.through_update(t, counted ? one.knot.updates[u] : silent(one.knot.updates[u]), one.D[u]);

@@ -103,7 +103,7 @@ PreparedMission::PreparedMission(record::ImuRecording imu, record::GnssRecording
   test_noise();
   if (setup_.noise_fit) {
     fit_and_adopt(progress);
-  } else {
+  } else if (!setup_.start) {  // with a better start the antenna's steps may converge that did not before
     refine_start(progress);
     refine_antenna(progress);
   }
@@ -171,8 +171,9 @@ void PreparedMission::fit_and_adopt(const Progress& progress) {
 void PreparedMission::find_standstill() {
   mission_ = std::make_unique<estimate::Mission>(estimate::Mission{imu_, gnss_});
   mission_->C_s_b = setup_.C_s_b;
-  mission_->lever_arm_b = setup_.lever_arm_b;
-  mission_->time_offset_s = setup_.time_offset_s;
+  const AntennaPlace antenna = setup_.antenna_found.value_or(AntennaPlace{setup_.time_offset_s, setup_.lever_arm_b});
+  mission_->lever_arm_b = antenna.lever_arm_b;
+  mission_->time_offset_s = antenna.time_offset_s;
   mission_->first_epoch = imu_.samples.front().t - imu_.samples.front().dt;
   for (const ins::StaticPeriod& period : ins::find_static_periods(imu_, &gnss_)) {
     const record::ImuSample& first = imu_.samples[period.first];

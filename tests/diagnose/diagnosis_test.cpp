@@ -165,6 +165,17 @@ TEST(Diagnosis, ATimeOffsetThatIsFarOffIsFoundFromWhatTurnsTell) {
   EXPECT_NEAR(f->value, -0.3, 4.0 * f->sd);
 }
 
+// With the stated noise every offset contradicts the fixes, and a wrong one may do so less.
+TEST(Diagnosis, AWrongGuessOfTheOffsetIsNotTakenWhereNoiseIsStatedTooSmall) {
+  MissionInput input = test::honest_mission(3);
+  for (const noise::Sensor sensor : {noise::Sensor::kGyro, noise::Sensor::kAccel})
+    input.setup.model = input.setup.model.with_white_noise_scaled(sensor, Eigen::Vector3d::Constant(0.02));
+  input.setup.filter.auxiliary.time_offset_sd_s = 0.1;
+  const Diagnosis d = diagnose::diagnose(input, {.twins = 0, .time_offset_s = 1.5}, {});
+  EXPECT_TRUE(d.findings.empty()) << names(d);
+  EXPECT_EQ(d.noise.size(), 2U) << names(d);
+}
+
 // A wandering bias explains a ramp nearly as well as a ramp does, and takes its place where it comes first.
 TEST(Diagnosis, ARampAndALeverArmAreBothFound) {
   MissionInput input = test::honest_mission(12);
@@ -260,7 +271,7 @@ TEST(Diagnosis, NoiseOfOneAxisIsFoundAsNoiseOfThatAxis) {
   ASSERT_TRUE(f->by_axis.has_value());
   EXPECT_NEAR(f->by_axis->y() / kTimes, 1.0, 0.3);
   EXPECT_LT(f->by_axis->x(), 2.0);
-  EXPECT_LT(f->by_axis->z(), 2.0);
+  EXPECT_LT(f->by_axis->z(), 0.5 * kTimes);  // hardly seen: a drive turns the heading's error into little
   EXPECT_NEAR(d.after.nis, 1.0, 0.1);
 }
 

@@ -10,6 +10,7 @@
 #include "coast/study/interpolation.hpp"
 #include "coast/study/solution.hpp"
 #include "diagnose/concealed.hpp"
+#include "evidence/selected_effects.hpp"
 
 namespace coast {
 namespace {
@@ -38,6 +39,12 @@ class Examined {
     return diagnose::examine(mission_.mission(), solution_.filter->layout(), solution_.knots, hypotheses_,
                              {.draws = draws, .started = started});
   }
+  /// What its score leaves out.
+  [[nodiscard]] double own_noise(Eigen::Index i) const {
+    return evidence_of_sizes(mission_.mission(), solution_.filter->layout(), solution_.knots,
+                             SelectedAlone(hypotheses_, {{.hypothesis = i}}))
+        .own_noise(0);
+  }
   /// Of a filter that knows of the effects, from the same start.
   [[nodiscard]] double log_likelihood(const std::vector<SelectedEffect>& taken) const {
     MissionInput with = without(taken, input_, hypotheses_, path_, mission_.mission(), solution_.filter->layout());
@@ -62,7 +69,7 @@ MissionInput mission_led_by_fixes() {
   noise.gnss_scale = {.horizontal = 0.1, .vertical = 0.1, .velocity = 1.0};
   noise.correlated_gnss = {.horizontal_m = 0.02, .vertical_m = 0.04, .time_s = 5.0};
   noise.gyro_factors.setConstant(3.0);
-  noise.accel_factor = 100.0;
+  noise.accel_factors.setConstant(100.0);
   input.setup.model = estimate::adjusted(input.setup.model, noise);
   input.setup.filter = estimate::adjusted(input.setup.filter, noise);
   return input;
@@ -88,7 +95,9 @@ TEST(Examination, ScoresAreSlopesOfTheLogLikelihood) {
     const double slope = examined.log_likelihood({{.hypothesis = i, .value = 0.5 * sd}}) -
                          examined.log_likelihood({{.hypothesis = i, .value = -0.5 * sd}});
     // The smoothed velocity has a little of the innovations in it too: 0.4 standard deviations here, where the filter's has 23.
-    EXPECT_NEAR(e.score(i) * sd, slope, 0.5 + 0.03 * std::abs(slope)) << name << " " << axis;
+    const double score = (e.score(i) + examined.own_noise(i)) * sd;
+    EXPECT_NEAR(score, slope, 0.5 + 0.03 * std::abs(slope)) << name << " " << axis;
+    EXPECT_EQ(examined.own_noise(i) != 0.0, examined.hypotheses().grows_with_own_signal(i)) << name << " " << axis;
   }
 }
 

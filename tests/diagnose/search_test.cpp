@@ -106,6 +106,38 @@ TEST(Runs, SeveralAtATimeAreThoseMadeOneByOne) {
   EXPECT_EQ(search.context.runs.made(), made);
 }
 
+// A rate that is mostly noise is better made smaller, which is no scale factor.
+TEST(ExplainedRun, GainsNothingByASmallerNoise) {
+  Searching search(test::honest_mission(1, 220.0));
+  const State start = begin(search.context);
+  EXPECT_EQ(start.run->log_likelihood(), start.run->mission().log_likelihood());
+  constexpr double kScale = 0.01;
+  const Explanation explanation = start.explanation.with({.hypothesis = index_of(start, "lever_arm_error", "y"), .value = 0.01})
+                                      .with({.hypothesis = index_of(start, "gyro_scale_factor", "y"), .value = kScale});
+  const RunPtr run = search.context.runs.about(explanation, start.run);
+  const Eigen::VectorXd gain = run->sizes().own_noise;
+  EXPECT_EQ(gain(0), 0.0);
+  EXPECT_GT(gain(1), 0.0);
+  EXPECT_EQ(run->log_likelihood(), run->mission().log_likelihood() - kScale * gain(1));
+}
+
+// Its prior is about what is stated, its linearisation about what was found: no run looks for it again.
+TEST(ExplainedRun, BeginsWithTheAntennaFoundBefore) {
+  MissionInput input = test::honest_mission(1, 220.0);
+  input.setup.time_offset_s = 0.05;
+  input.setup.filter.auxiliary.time_offset_sd_s = 0.1;
+  Searching search(input);
+  const State start = begin(search.context);
+  const double found = start.run->mission().mission().time_offset_s;
+  EXPECT_LT(std::abs(found), 0.01);
+  const Explanation later = start.explanation.with({.hypothesis = index_of(start, "gnss_time_offset", ""), .value = 0.02});
+  const RunPtr run = search.context.runs.about(later, start.run);
+  ASSERT_TRUE(run->input().setup.antenna_found.has_value());
+  EXPECT_NEAR(run->input().setup.antenna_found->time_offset_s, found + 0.02, 1e-12);
+  EXPECT_EQ(run->input().setup.time_offset_s, 0.07);
+  EXPECT_LT(std::abs(run->mission().mission().time_offset_s), 0.01);
+}
+
 // The pass of the whole catalogue is the reference: the same sums in another order, so only rounding differs.
 TEST(ExplainedRun, SizesAreThoseOfTheWholeCatalogue) {
   Searching search(test::honest_mission(1, 220.0));
@@ -230,6 +262,16 @@ TEST(Proposal, InVainLeavesTheRunThatStands) {
   EXPECT_TRUE(next->explanation == proposal.explanation);
   EXPECT_LT(told, -10.0);
   EXPECT_DOUBLE_EQ(told, next->run->log_likelihood() - start.run->log_likelihood());
+}
+
+TEST(Proposal, IsNotAcceptedWhereWhatFollowsIsLessLikely) {
+  Searching search(test::honest_mission(1, 220.0));
+  const State start = begin(search.context);
+  Proposal proposal{.explanation = start.explanation, .about = start.run};
+  proposal.least_log_likelihood = start.run->log_likelihood() + 100.0;
+  EXPECT_FALSE(accepted(proposal, start, search.context).has_value());
+  proposal.least_log_likelihood = start.run->log_likelihood() - 100.0;
+  EXPECT_TRUE(accepted(proposal, start, search.context).has_value());
 }
 
 // Turns that tell a wrong offset: it is tried once, in vain.

@@ -194,5 +194,57 @@ TEST_F(EffectPassTest, EstimateOfAnInjectedEffectIsWithinItsSigma) {
   EXPECT_NEAR((after - before) / bias, 1.0, 0.01);  // thirty sigmas: the same noise, and what is not linear
 }
 
+/// The scale factor of a gyro that turns little and is noisy.
+class PitchScale : public Effects {
+ public:
+  explicit PitchScale(bool tells_slope) : tells_slope_(tells_slope) {}
+  [[nodiscard]] Eigen::Index size() const override { return 1; }
+  void add_sensor_errors(const SampleView& sample, Eigen::Matrix3Xd& gyro_b, Eigen::Matrix3Xd& /*accel_b*/) const override {
+    gyro_b(1, 0) = sample.omega_b.y();
+  }
+  void add_own_slopes(const SampleView& /*sample*/, OwnSlopes& slopes) const override {
+    slopes(1, 0) = tells_slope_ ? 1.0 : 0.0;
+  }
+  void add_measurement_errors(const MeasurementView& /*m*/, Eigen::MatrixXd& /*D*/) const override {}
+
+ private:
+  bool tells_slope_;
+};
+
+// Monte Carlo: what is measured of a rate is mostly noise, and noise is as large as itself. Without the correction each of
+// these missions would seem to have a scale factor.
+TEST(EffectPass, NoiseOfTheSensorIsNotItsScaleFactor) {
+  constexpr int kMissions = 40;
+  const noise::ImuErrorModel model = test::error_model(R"(schema: coast.imu_error_model/1
+gyro: {all: [{process: white_noise, density: 0.3, unit: deg/s/sqrt(Hz)}, {process: random_constant, sigma: 0.1, unit: deg/s}]}
+accel: {all: [{process: white_noise, density: 1000, unit: ug/sqrt(Hz)}, {process: random_constant, sigma: 5, unit: mg}]}
+)");
+  double corrected = 0.0, uncorrected = 0.0, squares = 0.0;
+  for (int seed = 1; seed <= kMissions; ++seed) {
+    const test::Recording recording =
+        test::make_recording({.duration = 60.0, .imu_rate_hz = 50.0}, &model, static_cast<std::uint64_t>(seed));
+    const Mission mission = recording.mission();
+    const ForwardFilter filter(mission, model, {});
+    std::mt19937_64 random(static_cast<std::uint64_t>(seed));
+    KnotStore knots;
+    FilterOutputs outputs;
+    outputs.knots = &knots;
+    static_cast<void>(filter.run(test::drawn_start(filter, recording.truth(test::mission_start()), {}, random), outputs));
+    const auto sigmas = [&](bool tells_slope) {
+      double z = 0.0;
+      effect_pass(mission, filter.layout(), knots, PitchScale(tells_slope), {},
+                  [&](const Evidence& e) { z = -e.r_effects(0) / std::sqrt(e.N_effects(0, 0)); });
+      return z;
+    };
+    corrected += sigmas(true) / kMissions;
+    uncorrected += sigmas(false) / kMissions;
+    squares += sigmas(true) * sigmas(true) / kMissions;
+  }
+  const double of_mean = std::sqrt(1.0 / kMissions);
+  EXPECT_NEAR(corrected, 0.0, 3.3 * of_mean);  // one of a thousand
+  EXPECT_GT(uncorrected, 10.0 * of_mean);
+  EXPECT_LT(squares, 1.0 + 3.3 * std::sqrt(2.0 / kMissions));
+}
+
 }  // namespace
 }  // namespace coast

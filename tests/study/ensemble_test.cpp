@@ -58,8 +58,9 @@ double in_sigmas(const OutageErrors& a, const OutageErrors& b) {
 TEST(Ensemble, EqualsSeedsProcessedOneByOneWithoutTheFixesOfTheOutage) {
   EnsemblePlan p = plan(2);
   const NamedModel own = p.cases[0].truth;
-  p.cases[0].filters.push_back(
-      {"gyro noise doubled", own.model.with_white_noise_scaled(noise::Sensor::kGyro, 2.0), std::nullopt});
+  p.cases[0].filters.push_back({"gyro noise doubled",
+                                own.model.with_white_noise_scaled(noise::Sensor::kGyro, Eigen::Vector3d::Constant(2.0)),
+                                std::nullopt});
   p.cases[0].filters.push_back({"as a batch", own.model, estimate::BatchOptions{}});
   const StudyResult result = run_ensemble(p);
   ASSERT_EQ(result.runs.size(), 3U);

@@ -64,10 +64,14 @@ class Hypotheses : public estimate::Effects {
   [[nodiscard]] Eigen::Index bias_step(Site site, Eigen::Index axis) const;
   /// Why an effect is left out; null if it is not.
   [[nodiscard]] const char* why_not_seen(const Effect& effect) const;
+  /// Whether the error of an axis depends on what that axis measures: then its noise looks like the effect
+  /// (estimate::effect_pass).
+  [[nodiscard]] bool grows_with_own_signal(Eigen::Index i) const { return grows_[static_cast<std::size_t>(i)]; }
   /// Signals in sensor axes at a sample.
   [[nodiscard]] Signals signals(const estimate::SampleView& sample) const;
   void add_sensor_errors(const estimate::SampleView& sample, Eigen::Matrix3Xd& gyro_b,
                          Eigen::Matrix3Xd& accel_b) const override;
+  void add_own_slopes(const estimate::SampleView& sample, estimate::OwnSlopes& slopes) const override;
   void add_measurement_errors(const estimate::MeasurementView& measurement, Eigen::MatrixXd& D) const override;
   /// Errors of the fix only, without the effect of gyro errors on the prediction. @param measurement  position or velocity of a
   /// fix
@@ -80,6 +84,10 @@ class Hypotheses : public estimate::Effects {
     Eigen::Index count;
   };
   void add(const Effect& effect, double plausible);
+  void find_own_slopes();
+  [[nodiscard]] estimate::OwnSlopes own_slopes(const Signals& at) const;
+  /// Errors in sensor axes.
+  void add_errors(const Signals& at, Eigen::Matrix3Xd& gyro, Eigen::Matrix3Xd& accel) const;
   [[nodiscard]] record::NavState smoothed(const record::NavState& filtered) const;
   void add_slip(const estimate::MeasurementView& measurement, Eigen::MatrixXd& D) const;
   /// Errors of the measured rate, which enter the filter's prediction for a point away from the IMU, body axes.
@@ -91,6 +99,7 @@ class Hypotheses : public estimate::Effects {
   std::shared_ptr<const SignalTable> signals_;
   std::vector<Hypothesis> all_;
   std::vector<Part> parts_;
+  std::vector<bool> grows_;  ///< by hypothesis
 };
 
 }  // namespace coast::diagnose

@@ -26,6 +26,10 @@ struct MeasurementView {
   const UpdateContext& context;
 };
 
+/// Derivatives of errors per unit coefficient with respect to the measured value of the same axis of the sensor: gyro x, y, z,
+/// accelerometer x, y, z, by coefficient.
+using OwnSlopes = Eigen::Matrix<double, 6, Eigen::Dynamic>;
+
 /// Hypotheses (effects), each with an unknown coefficient: the error in the measured values per unit coefficient. Error =
 /// measured - true. A pass asks from several threads at a time.
 class Effects {
@@ -37,6 +41,8 @@ class Effects {
   [[nodiscard]] virtual Eigen::Index size() const = 0;
   /// @param gyro_b, accel_b  3 x size, rad/s and m/s^2 per unit; zero on entry
   virtual void add_sensor_errors(const SampleView& sample, Eigen::Matrix3Xd& gyro_b, Eigen::Matrix3Xd& accel_b) const = 0;
+  /// @param slopes  6 x size; zero on entry, and if no error depends on what is measured
+  virtual void add_own_slopes(const SampleView& /*sample*/, OwnSlopes& /*slopes*/) const {}
   /// @param D  m x size, components as in the update of the measurement; zero on entry
   virtual void add_measurement_errors(const MeasurementView& measurement, Eigen::MatrixXd& D) const = 0;
 };
@@ -53,6 +59,7 @@ struct Evidence {
   const Eigen::VectorXd& r;          ///< of the states, n
   const Eigen::MatrixXd& N;          ///< n x n
   const Eigen::VectorXd& r_effects;  ///< p
+  const Eigen::VectorXd& own_noise;  ///< p; what was subtracted from the scores, -r_effects
   const Eigen::MatrixXd& N_cross;    ///< n x p
   const Eigen::MatrixXd& N_effects;  ///< p x p, the lower triangle
   /// r and r_effects for the innovations of `EffectPassOptions::draw`: one column per draw.
@@ -71,6 +78,11 @@ struct EffectPassOptions {
   std::function<bool(geo::GpsTime)> counts = {};  ///< updates at other instants give no evidence; empty: all count
 };
 
+/// An effect whose error grows with the measured signal is in part the sensor's own noise: with e = c s and s = true + n the
+/// score of c has the mean sum of g tr(N Q) where nothing is missing, g the slope of the error in s and Q the covariance that
+/// the axis's white noise adds to the navigation states (errors in variables; corrected score, Nakamura 1990). It is
+/// subtracted.
+///
 /// Processes the knots from the last to the first; `visit` is called at each with the evidence of its own and all later
 /// updates. The nominal trajectory is recomputed from every knot; effects are linearised about it. The cost is some products of
 /// n x p and 9 x p x p per knot and 20 flops per coefficient and sample; nothing is allocated per sample. Columns of the knots

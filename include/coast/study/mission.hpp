@@ -40,6 +40,13 @@ struct AidSource {
   record::AidRecording rows;
 };
 
+/// Time offset and lever arm: the antenna's position at the time of a fix.
+struct AntennaPlace {
+  double time_offset_s = 0.0;
+  Eigen::Vector3d lever_arm_b = Eigen::Vector3d::Zero();
+  bool operator==(const AntennaPlace&) const = default;
+};
+
 /// How a mission is processed; filled from run.yaml.
 struct Setup {
   Eigen::Matrix3d C_s_b = Eigen::Matrix3d::Identity();
@@ -54,6 +61,8 @@ struct Setup {
   Eigen::VectorXd start_sensor_errors;
   /// Behind long gaps of the IMU, if given; otherwise each is found as the start is, which takes longer than filtering.
   std::optional<std::vector<estimate::Restart>> restarts;
+  /// Where the refinement of an estimated antenna begins, if it was found before; the prior remains about the stated values.
+  std::optional<AntennaPlace> antenna_found;
   int start_rounds = 4;  ///< maximum number of refinements of a start found by alignment
   /// Start of the first studied outage: the start is refined only with fixes before it, so that outage results are not too
   /// optimistic.
@@ -99,6 +108,8 @@ class PreparedMission {
 
   [[nodiscard]] const estimate::Mission& mission() const { return *mission_; }
   [[nodiscard]] const Setup& setup() const { return setup_; }
+  /// Whether time offset or lever arm are states.
+  [[nodiscard]] bool antenna_is_estimated() const;
   [[nodiscard]] const noise::ImuErrorModel& model() const { return setup_.model; }
   [[nodiscard]] const estimate::FilterOptions& options() const { return setup_.filter; }
   [[nodiscard]] const ins::InitialState& start() const { return start_; }
@@ -146,7 +157,6 @@ class PreparedMission {
   void choose_time_offset(const Progress& progress);
   void take_out_velocity_lag();
   [[nodiscard]] AntennaChoice antenna_to_test() const;
-  [[nodiscard]] bool antenna_is_estimated() const;
   [[nodiscard]] estimate::FilterState antenna_as_stated(estimate::FilterState state, const estimate::StateLayout& layout) const;
   [[nodiscard]] AntennaFit fit_antenna(AntennaChoice estimated);
   void test_antenna();

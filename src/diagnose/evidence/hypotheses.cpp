@@ -1,6 +1,7 @@
 #include "coast/diagnose/hypotheses.hpp"
 
 #include <algorithm>
+#include <array>
 #include <iterator>
 
 #include "coast/geo/earth.hpp"
@@ -19,6 +20,7 @@ Hypotheses::Hypotheses(const estimate::Mission& mission, const estimate::FilterO
     if (why_not_seen(effect) == nullptr) add(effect, effect.plausible[static_cast<std::size_t>(grade)]);
   for (const EffectPtr& effect : suggested)
     if (why_not_seen(*effect) == nullptr) add(*effect, effect->plausible[static_cast<std::size_t>(grade)]);
+  find_own_slopes();
 }
 
 Hypotheses::Hypotheses(const Hypotheses& all, const std::vector<Eigen::Index>& kept)
@@ -27,6 +29,7 @@ Hypotheses::Hypotheses(const Hypotheses& all, const std::vector<Eigen::Index>& k
     const auto is_of_it = [&](Eigen::Index i) { return i >= part.first && i < part.first + part.count; };
     if (std::ranges::any_of(kept, is_of_it)) add(*part.effect, all[part.first].plausible);
   }
+  find_own_slopes();
 }
 
 void Hypotheses::add(const Effect& effect, double plausible) {
@@ -53,15 +56,60 @@ Signals Hypotheses::signals(const estimate::SampleView& sample) const {
   return signals_->at(std::min(sample.index, mission_.imu.samples.size() - 1), sample.omega_b, sample.f_b, sample.nav);
 }
 
-void Hypotheses::add_sensor_errors(const estimate::SampleView& sample, Eigen::Matrix3Xd& gyro_b,
-                                   Eigen::Matrix3Xd& accel_b) const {
-  const Signals at = signals(sample);
+void Hypotheses::add_errors(const Signals& at, Eigen::Matrix3Xd& gyro, Eigen::Matrix3Xd& accel) const {
   for (const Part& part : parts_) {
     if (part.effect->sensors) {
-      SensorErrors errors{gyro_b.middleCols(part.first, part.count), accel_b.middleCols(part.first, part.count)};
+      SensorErrors errors{gyro.middleCols(part.first, part.count), accel.middleCols(part.first, part.count)};
       part.effect->sensors(at, errors);
     }
   }
+}
+
+void Hypotheses::add_own_slopes(const estimate::SampleView& sample, estimate::OwnSlopes& slopes) const {
+  slopes += own_slopes(signals(sample));
+}
+
+// At signals none of which is zero or equal to another.
+void Hypotheses::find_own_slopes() {
+  Signals some;
+  some.omega = {0.11, -0.23, 0.37};
+  some.f = {1.3, -0.7, -9.1};
+  some.omega_dot = {0.5, 0.3, -0.9};
+  some.vibration = {0.2, 0.5, 0.9};
+  some.coning = {1e-5, 2e-5, -3e-5};
+  some.temperature = 3.0;
+  some.temperature_rate = 0.01;
+  some.elapsed = 100.0;
+  some.speed = 10.0;
+  some.C_n_e = geo::C_n_e({0.7, 0.2, 100.0});
+  some.C_e_s = (some.C_n_e * geo::rotation_matrix({0.1, -0.2, 0.9})).transpose();
+  const estimate::OwnSlopes slopes = own_slopes(some);
+  for (const auto& column : slopes.colwise()) grows_.push_back(!column.isZero(1e-12));
+}
+
+estimate::OwnSlopes Hypotheses::own_slopes(const Signals& at) const {
+  constexpr double kRate = 1e-3, kForce = 1e-2;  // rad/s, m/s^2: equations are of second order at most
+  estimate::OwnSlopes slopes(6, size());
+  const auto errors_at = [&](const Signals& signals) {
+    std::array<Eigen::Matrix3Xd, 2> errors{Eigen::Matrix3Xd::Zero(3, size()), Eigen::Matrix3Xd::Zero(3, size())};
+    add_errors(signals, errors[0], errors[1]);
+    return errors;
+  };
+  for (Eigen::Index axis = 0; axis < 6; ++axis) {
+    Signals above = at, below = at;
+    const bool gyro = axis < 3;
+    const double step = gyro ? kRate : kForce;
+    (gyro ? above.omega : above.f)(axis % 3) += step;
+    (gyro ? below.omega : below.f)(axis % 3) -= step;
+    const auto sensor = gyro ? std::size_t{0} : std::size_t{1};
+    slopes.row(axis) = (errors_at(above)[sensor].row(axis % 3) - errors_at(below)[sensor].row(axis % 3)) / (2.0 * step);
+  }
+  return slopes;
+}
+
+void Hypotheses::add_sensor_errors(const estimate::SampleView& sample, Eigen::Matrix3Xd& gyro_b,
+                                   Eigen::Matrix3Xd& accel_b) const {
+  add_errors(signals(sample), gyro_b, accel_b);
   gyro_b = mission_.C_s_b * gyro_b;
   accel_b = mission_.C_s_b * accel_b;
 }

@@ -20,6 +20,13 @@ void WithSelected::add_sensor_errors(const estimate::SampleView& sample, Eigen::
   repeat(sample.nav.t, accel_b);
 }
 
+void WithSelected::add_own_slopes(const estimate::SampleView& sample, estimate::OwnSlopes& slopes) const {
+  estimate::OwnSlopes of_all = estimate::OwnSlopes::Zero(6, hypotheses_.size());
+  hypotheses_.add_own_slopes(sample, of_all);
+  slopes.leftCols(of_all.cols()) = of_all;
+  repeat(sample.nav.t, slopes);
+}
+
 void WithSelected::add_measurement_errors(const estimate::MeasurementView& measurement, Eigen::MatrixXd& D) const {
   hypotheses_.add_measurement_errors(measurement, D);
   repeat(measurement.nav.t, D);
@@ -75,6 +82,7 @@ SizeEvidence evidence_of_sizes(const estimate::Mission& mission, const estimate:
                         [&](const estimate::Evidence& e) {
                           if (--left > 0) return;
                           result.score = -Eigen::VectorXd(e.r_effects(rows));
+                          result.own_noise = e.own_noise(rows);
                           const Eigen::MatrixXd N = e.N_effects.selfadjointView<Eigen::Lower>();
                           result.information = N(rows, rows);
                         });

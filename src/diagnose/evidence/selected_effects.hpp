@@ -21,6 +21,7 @@ class WithSelected : public estimate::Effects {
   [[nodiscard]] bool any_holds(geo::GpsTime t) const;
   void add_sensor_errors(const estimate::SampleView& sample, Eigen::Matrix3Xd& gyro_b,
                          Eigen::Matrix3Xd& accel_b) const override;
+  void add_own_slopes(const estimate::SampleView& sample, estimate::OwnSlopes& slopes) const override;
   void add_measurement_errors(const estimate::MeasurementView& measurement, Eigen::MatrixXd& D) const override;
   /// As Hypotheses::add_fix_errors().
   void add_fix_errors(const estimate::MeasurementView& measurement, Eigen::MatrixXd& D) const;
@@ -56,6 +57,9 @@ class SelectedAlone {
 struct SizeEvidence {
   Eigen::VectorXd score;
   Eigen::MatrixXd information;
+  /// Gain of log-likelihood per unit of each that comes from less noise of a sensor whose signal is made smaller; not in
+  /// `score`.
+  Eigen::VectorXd own_noise;
 };
 /// @param knots   of a forward pass with the layout
 /// @param counts  innovations at other instants are not used; empty: all are

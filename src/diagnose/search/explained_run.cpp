@@ -38,9 +38,18 @@ void forget_standstill(const TurnOn& bias, study::Setup& setup) {
   setup.start->gyro_bias_sd.reset();
 }
 
-/// Restarts behind gaps are found once, as the start is, unless the antenna is elsewhere at the time of a fix.
+/// What an antenna that is estimated adds to its stated place is found once, as the start is.
+void keep_antenna(const MissionRun& other, study::Setup& setup) {
+  if (!other.prepared().antenna_is_estimated()) return;
+  const study::Setup& stated = other.prepared().setup();
+  setup.antenna_found = {other.mission().time_offset_s + setup.time_offset_s - stated.time_offset_s,
+                         other.mission().lever_arm_b + setup.lever_arm_b - stated.lever_arm_b};
+}
+
+/// So are restarts behind gaps, unless the antenna is elsewhere at the time of a fix.
 void keep_restarts(const MissionRun& other, study::Setup& setup) {
-  if (setup.lever_arm_b == other.mission().lever_arm_b && setup.time_offset_s == other.mission().time_offset_s)
+  const study::AntennaPlace place = setup.antenna_found.value_or(study::AntennaPlace{setup.time_offset_s, setup.lever_arm_b});
+  if (place == study::AntennaPlace{other.mission().time_offset_s, other.mission().lever_arm_b})
     setup.restarts = other.mission().restarts;
 }
 
@@ -57,12 +66,19 @@ ExplainedRun::ExplainedRun(Explanation explanation, MissionInput input, std::opt
       sensors_(std::move(sensors)),
       key_(key),
       progress_(progress),
-      run_(input_, grade, explanation_.suggested, progress) {}
+      run_(input_, grade, explanation_.suggested, progress) {
+  log_likelihood_ = run_.log_likelihood() - gain_by_own_noise();
+  for (const TurnOn& bias : explanation_.shared) log_likelihood_ += gain_about_stated(bias, run_);
+}
 
-double ExplainedRun::log_likelihood() const {
-  double sum = run_.log_likelihood();
-  for (const TurnOn& bias : explanation_.shared) sum += gain_about_stated(bias, run_);
-  return sum;
+// A signal that is mostly noise predicts better if it is made smaller: with e = c s, E[noise s] > 0. To first order in c.
+double ExplainedRun::gain_by_own_noise() const {
+  const std::vector<SelectedEffect>& effects = explanation_.effects;
+  const auto grows = [&](const SelectedEffect& one) { return run_.hypotheses().grows_with_own_signal(one.hypothesis); };
+  if (std::ranges::none_of(effects, grows)) return 0.0;
+  double gain = 0.0;
+  for (std::size_t i = 0; i < effects.size(); ++i) gain += effects[i].value * sizes().own_noise(static_cast<Eigen::Index>(i));
+  return gain;
 }
 
 bool ExplainedRun::found_sensors_elsewhere() const {
@@ -109,7 +125,7 @@ SizeEvidence ExplainedRun::sizes_where(const std::function<bool(geo::GpsTime)>& 
   const SizeEvidence all = evidence_of_sizes(run_.mission(), run_.layout(), run_.solution().knots,
                                              SelectedAlone(run_.hypotheses(), selected), counts);
   const auto own = static_cast<Eigen::Index>(explanation_.effects.size());
-  SizeEvidence result{all.score.head(own), all.information.topLeftCorner(own, own)};
+  SizeEvidence result{all.score.head(own), all.information.topLeftCorner(own, own), all.own_noise.head(own)};
   for (std::size_t i = 0; i < explanation_.shared.size(); ++i)
     result.score +=
         prior_mean(explanation_.shared[i], run_) * all.information.col(own + static_cast<Eigen::Index>(i)).head(own);
@@ -130,6 +146,7 @@ RunPtr Runs::make(const Explanation& explanation, const ExplainedRun& other) {
   MissionInput input = explained(explanation, other.mission());
   loosen_start(other.mission().prepared(), other.mission().solution().smoothed.front(), input);
   for (const TurnOn& bias : explanation.shared) forget_standstill(bias, input.setup);
+  keep_antenna(other.mission(), input.setup);
   keep_restarts(other.mission(), input.setup);
   SensorsAtStart sensors = sensors_for(explanation, input, other);
   input.setup.start_sensor_errors = sensor_states_in(layout_of(input), sensors.layout, sensors.x);
@@ -212,6 +229,7 @@ MissionInput Runs::with_sizes(const std::vector<SelectedEffect>& effects, const 
   MissionInput input = explained(other, run.mission());
   input.setup.start = run.input().setup.start;
   input.setup.start_sensor_errors = run.input().setup.start_sensor_errors;
+  keep_antenna(run.mission(), input.setup);
   keep_restarts(run.mission(), input.setup);
   return input;
 }

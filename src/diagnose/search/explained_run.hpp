@@ -38,8 +38,8 @@ class ExplainedRun {
   [[nodiscard]] std::size_t key() const { return key_; }
   [[nodiscard]] const MissionRun& mission() const { return run_; }
   [[nodiscard]] const Hypotheses& hypotheses() const { return run_.hypotheses(); }
-  /// With the error model's prior for shared biases.
-  [[nodiscard]] double log_likelihood() const;
+  /// With the error model's prior for shared biases, and without what its effects gain by making the noise of a sensor smaller.
+  [[nodiscard]] double log_likelihood() const { return log_likelihood_; }
   /// Whether the estimated sensor errors are far from those at its start.
   [[nodiscard]] bool found_sensors_elsewhere() const;
   /// Scores and information, without draws. Computed when first asked for, by one thread.
@@ -53,12 +53,15 @@ class ExplainedRun {
   [[nodiscard]] SizeEvidence sizes_where(const std::function<bool(geo::GpsTime)>& counts) const;
 
  private:
+  [[nodiscard]] double gain_by_own_noise() const;
+
   Explanation explanation_;
   MissionInput input_;
   std::optional<SensorsAtStart> sensors_;
   std::size_t key_;
   const study::Progress& progress_;
   MissionRun run_;
+  double log_likelihood_ = 0.0;
   mutable std::optional<Examination> scores_;
   mutable std::optional<SizeEvidence> sizes_;
 };

@@ -13,6 +13,7 @@ std::optional<State> accepted(const Proposal& proposal, const State& from, Conte
   if (!run || gain(run) < proposal.least_gain) return std::nullopt;
   State next = with_run(from, run);
   proposal.accept(next, gain(run));
+  if (next.run->log_likelihood() < proposal.least_log_likelihood) return std::nullopt;
   return next;
 }
 

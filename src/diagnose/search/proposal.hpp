@@ -24,6 +24,8 @@ struct Proposal {
   Sizes sizes = Sizes::kStay;
   /// Sets its report and history after acceptance. @param state  with its run
   std::function<void(State& state, double gain)> accept = [](State&, double) {};
+  /// Of what `accept` makes of the state: with less it is not accepted after all.
+  double least_log_likelihood = -std::numeric_limits<double>::infinity();
 };
 
 /// Proposals of one move, in the order of trial. The first accepted one ends the step.

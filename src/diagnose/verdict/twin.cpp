@@ -149,6 +149,7 @@ MissionInput twin(const std::vector<record::NavState>& path, const MissionInput&
   rotate(result.imu, model.setup.C_s_b);
   result.setup.high_order_compensation = false;
   result.setup.restarts.reset();  // they are of the recording: the twin has fixes of its own behind its gaps
+  result.setup.antenna_found.reset();
   return result;
 }
 

@@ -31,12 +31,14 @@ State settled(State state, bool was_fitted, Context& context) {
 }  // namespace
 
 Proposals move_time_offset(Look& look) {
-  constexpr double kFar = 0.1;  // s
+  constexpr double kFar = 0.1;  // s: turns tell it to half of this
+  constexpr double kSds = 2.0;  // of its prior: nearer ones a run that estimates it finds itself
   const std::optional<double> guess = look.state().limits.time_offset_s;
   if (!guess) return {};
   const auto is_tried = [](State& next) { next.limits.time_offset_s.reset(); };
-  const double shift = *guess - look.context().runs.recorded().setup.time_offset_s;
-  if (std::abs(shift) < kFar) return {.reject = is_tried};
+  const study::Setup& stated = look.context().runs.recorded().setup;
+  const double shift = *guess - stated.time_offset_s;
+  if (std::abs(shift) < std::max(kFar, kSds * stated.filter.auxiliary.time_offset_sd_s)) return {.reject = is_tried};
   static_cast<void>(look.examination());
   Context& context = look.context();
   const bool was_fitted = look.state().explanation.noise.has_value();
@@ -49,7 +51,9 @@ Proposals move_time_offset(Look& look) {
         is_tried(next);
         next.excluded.rejected.push_back(h);
       }};
-  for (Proposal& one : proposals.tries)
+  const double standing = look.state().run->log_likelihood();
+  for (Proposal& one : proposals.tries) {
+    one.least_log_likelihood = standing;  // with stated noise that is far too small a wrong offset may seem to gain
     one.accept = [select = one.accept, was_fitted, is_tried, &context](State& next, double gain) {
       is_tried(next);
       select(next, gain);
@@ -59,6 +63,7 @@ Proposals move_time_offset(Look& look) {
       next.account.noise.reset();
       next = settled(std::move(next), was_fitted, context);
     };
+  }
   return proposals;
 }
 
