@@ -120,9 +120,10 @@ void TransitionAccumulator::add_white_noise() {
   add_gyro_noise(q_g, sum_f_cross, Q_n_);
   add_gyro_noise(q_g, sum_f_cross, Q_gyro_);
   if (!splits_) return;
-  for (int axis = 0; axis < 3; ++axis) {
-    add_gyro_noise(gyro.col(axis) * gyro.col(axis).transpose(), sum_f_cross, Q_axes_[static_cast<std::size_t>(axis)]);
-    add_accel_noise(accel.col(axis) * accel.col(axis).transpose(), h, Q_axes_[static_cast<std::size_t>(3 + axis)]);
+  for (Eigen::Index axis = 0; axis < 3; ++axis) {
+    const auto i = static_cast<std::size_t>(axis);
+    add_gyro_noise(gyro.col(axis) * gyro.col(axis).transpose(), sum_f_cross, Q_axes_[i]);
+    add_accel_noise(accel.col(axis) * accel.col(axis).transpose(), h, Q_axes_[3 + i]);
   }
 }
 
