@@ -60,8 +60,9 @@ class DrivenColumns {
 
  private:
   void take(const SampleStep& step, std::size_t next_sample) {
-    const SampleDynamics dynamics = navigator_.propagate(step.raw);
+    SampleDynamics dynamics = navigator_.propagate(step.raw);
     navigator_.set_time(step.at);
+    if (step.coasting) dynamics.without_sensors();
     gyro_b_.setZero();
     accel_b_.setZero();
     const SampleView sample{step.whole ? next_sample - 1 : next_sample, dynamics.dtheta_b / dynamics.dt,

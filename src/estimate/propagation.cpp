@@ -59,10 +59,7 @@ void Propagation::step(const SampleStep& step) {
   if (step.span) missing_share_ = missing_share(mission_.imu, *step.span);
   if (missing_share_ == 0.0) gap_before_ = 0.0;
   SampleDynamics dynamics = navigator_.propagate(step.raw);
-  if (step.coasting) {  // the assumed motion does not depend on tilt and sensor errors
-    dynamics.dv_e.setZero();
-    dynamics.C_b_e.setZero();
-  }
+  if (step.coasting) dynamics.without_sensors();
   transition_.add(dynamics);
   gap_ += missing_share_ * step.raw.dt;
   if (transition_.substep_due()) fold();

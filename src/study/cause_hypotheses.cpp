@@ -55,14 +55,17 @@ void add_units(std::vector<CauseHypothesis>& all) {
 }
 
 void add_antenna(std::vector<CauseHypothesis>& all) {
-  all.push_back({"the lever arm is", "", [](Excerpt&, Setup& setup) { setup.filter.auxiliary.lever_arm_sd_m = kFreeArmSd; }});
   all.push_back(
-      {"the time offset is", "", [](Excerpt&, Setup& setup) { setup.filter.auxiliary.time_offset_sd_s = kFreeTimeSd; }});
+      {"the lever arm is", "", [](Excerpt&, Setup& setup) { setup.filter.auxiliary.lever_arm_sd_m = kFreeArmSd; }, false});
+  all.push_back(
+      {"the time offset is", "", [](Excerpt&, Setup& setup) { setup.filter.auxiliary.time_offset_sd_s = kFreeTimeSd; }, false});
   for (const double shift : {-18.0, 18.0})
-    all.push_back({"the time offset is", "", [shift](Excerpt&, Setup& setup) {
+    all.push_back({"the time offset is", "",
+                   [shift](Excerpt&, Setup& setup) {
                      setup.time_offset_s += shift;
                      setup.filter.auxiliary.time_offset_sd_s = kFreeTimeSd;
-                   }});
+                   },
+                   false});
 }
 
 }  // namespace

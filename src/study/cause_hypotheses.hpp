@@ -14,6 +14,7 @@ struct CauseHypothesis {
   std::string what;
   std::string remedy;
   std::function<void(Excerpt&, Setup&)> apply;
+  bool of_samples = true;  ///< signs, axes and units; not antenna and time
 };
 
 /// Prior sigmas with which time offset and lever arm are determined by the data, s and m.

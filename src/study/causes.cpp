@@ -103,7 +103,7 @@ Fit fit(const Excerpt& excerpt, const Setup& stated, const CauseHypothesis* hypo
 }
 
 Cause told(const CauseHypothesis& hypothesis, const Fit& fit, double gain) {
-  Cause cause{hypothesis.what, hypothesis.remedy, gain};
+  Cause cause{hypothesis.what, hypothesis.remedy, gain, hypothesis.of_samples};
   if (fit.time_offset_s && hypothesis.what.starts_with("the time")) {
     cause.what += fmt::format(" {:+.3f} +- {:.3f} s", *fit.time_offset_s, *fit.time_offset_sd_s);
     cause.remedy = fmt::format("`gnss: {{time_offset_s: {:.3f}}}`", *fit.time_offset_s);
@@ -147,10 +147,10 @@ void run(const Excerpt& excerpt, const Setup& setup, std::vector<Profile>& profi
 std::optional<Cause> noise_cause(double factor, double gain, const estimate::NoiseFitChoice& fitted) {
   if (factor > 1.0 ? fitted.imu_white_noise : fitted.gnss_scale) return std::nullopt;
   if (factor > 1.0)
-    return Cause{fmt::format("the IMU's noise is about {:.0f} times what is stated", factor), "`imu: {noise: estimated}`",
-                 gain};
+    return Cause{fmt::format("the IMU's noise is about {:.0f} times what is stated", factor), "`imu: {noise: estimated}`", gain,
+                 false};
   return Cause{fmt::format("the noise of the fixes is about {:.0f} times what is stated", 1.0 / factor),
-               "`gnss: {noise: estimated}`", gain};
+               "`gnss: {noise: estimated}`", gain, false};
 }
 
 // A gap remains a gap: the next sample is added only if it follows at once.

@@ -25,6 +25,12 @@ struct SampleDynamics {
   Eigen::Vector3d dv_e;      ///< integral of C f, m/s
   Eigen::Vector3d dtheta_b;  ///< rotation over the interval, rad
   Eigen::Vector3d dv_b;      ///< specific-force increment in b, m/s
+
+  /// For an assumed motion, which depends neither on tilt nor on sensor errors.
+  void without_sensors() {
+    dv_e.setZero();
+    C_b_e.setZero();
+  }
 };
 
 /// Sums over some samples that are propagated as one step of the navigation errors.

@@ -18,9 +18,10 @@ struct Excerpt {
 
 /// One change in how the recording is read or modelled, with the gain in likelihood.
 struct Cause {
-  std::string what;    ///< "the sign of gyro x is turned", with value and sigma if one is estimated
-  std::string remedy;  ///< what to write in the run file, or to do
-  double gain = 0.0;   ///< gain of log-likelihood relative to the recording as described
+  std::string what;         ///< "the sign of gyro x is turned", with value and sigma if one is estimated
+  std::string remedy;       ///< what to write in the run file, or to do
+  double gain = 0.0;        ///< gain of log-likelihood relative to the recording as described
+  bool of_samples = false;  ///< signs, axes or units of the IMU are others than described
 };
 
 /// Aligns and filters the excerpt as described and under each hypothesis of a table (signs and exchanged axes of the gyro,

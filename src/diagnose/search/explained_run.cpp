@@ -67,17 +67,18 @@ ExplainedRun::ExplainedRun(Explanation explanation, MissionInput input, std::opt
       key_(key),
       progress_(progress),
       run_(input_, grade, explanation_.suggested, progress) {
-  log_likelihood_ = run_.log_likelihood() - gain_by_own_noise();
+  log_likelihood_ = run_.log_likelihood() - gain_by_own_noise(0, explanation_.effects.size());
   for (const TurnOn& bias : explanation_.shared) log_likelihood_ += gain_about_stated(bias, run_);
 }
 
-// A signal that is mostly noise predicts better if it is made smaller: with e = c s, E[noise s] > 0. To first order in c.
-double ExplainedRun::gain_by_own_noise() const {
-  const std::vector<SelectedEffect>& effects = explanation_.effects;
-  const auto grows = [&](const SelectedEffect& one) { return run_.hypotheses().grows_with_own_signal(one.hypothesis); };
-  if (std::ranges::none_of(effects, grows)) return 0.0;
+// A signal that is mostly noise predicts better if it is made smaller: with e = c s, E[noise s] > 0.
+double ExplainedRun::gain_by_own_noise(std::size_t first, std::size_t count) const {
   double gain = 0.0;
-  for (std::size_t i = 0; i < effects.size(); ++i) gain += effects[i].value * sizes().own_noise(static_cast<Eigen::Index>(i));
+  for (std::size_t i = first; i < first + count; ++i) {
+    const SelectedEffect& one = explanation_.effects[i];
+    if (run_.hypotheses().grows_with_own_signal(one.hypothesis))
+      gain += one.value * sizes().own_noise(static_cast<Eigen::Index>(i));
+  }
   return gain;
 }
 

@@ -40,6 +40,8 @@ class ExplainedRun {
   [[nodiscard]] const Hypotheses& hypotheses() const { return run_.hypotheses(); }
   /// With the error model's prior for shared biases, and without what its effects gain by making the noise of a sensor smaller.
   [[nodiscard]] double log_likelihood() const { return log_likelihood_; }
+  /// What some of its effects gain by making the noise of a sensor smaller; to first order in their sizes.
+  [[nodiscard]] double gain_by_own_noise(std::size_t first, std::size_t count) const;
   /// Whether the estimated sensor errors are far from those at its start.
   [[nodiscard]] bool found_sensors_elsewhere() const;
   /// Scores and information, without draws. Computed when first asked for, by one thread.
@@ -53,8 +55,6 @@ class ExplainedRun {
   [[nodiscard]] SizeEvidence sizes_where(const std::function<bool(geo::GpsTime)>& counts) const;
 
  private:
-  [[nodiscard]] double gain_by_own_noise() const;
-
   Explanation explanation_;
   MissionInput input_;
   std::optional<SensorsAtStart> sensors_;

@@ -87,9 +87,11 @@ void add_effects(const std::vector<SelectedEffect>& values, const std::vector<do
     others.erase(at, at + static_cast<std::ptrdiff_t>(effect.count));
     const std::vector<double> less = log_likelihoods(context.runs.with_sizes(others, *state.run), blocks);
     effect.begins = values[effect.first].from.has_value();
+    const double by_noise = state.run->gain_by_own_noise(effect.first, effect.count) / static_cast<double>(blocks.count());
     for (std::size_t b = fold; b < blocks.count(); b += 2) {
-      effect.gain += all[b] - less[b];
-      if (all[b] > less[b]) effect.better += 1.0 / static_cast<double>(blocks.count());
+      const double gain = all[b] - less[b] - by_noise;
+      effect.gain += gain;
+      if (gain > 0.0) effect.better += 1.0 / static_cast<double>(blocks.count());
       ++effect.blocks;
     }
   });
@@ -121,13 +123,15 @@ Verification verify(const State& state, const Context& context) {
   const Blocks blocks(state.run->input());
   const std::vector<double> without = log_likelihoods(context.runs.with_sizes({}, *state.run), blocks);
   std::vector<double> with(blocks.count(), 0.0);
+  const double by_noise =
+      state.run->gain_by_own_noise(0, state.explanation.effects.size()) / static_cast<double>(blocks.count());
   Verification result;
   for_each_selection(state.account,
                      [&](std::size_t first, std::size_t count) { result.effects.push_back({.first = first, .count = count}); });
   for (std::size_t fold = 0; fold < 2; ++fold) {
     const std::vector<SelectedEffect> values = sizes_without(fold, blocks, state);
     const std::vector<double> all = log_likelihoods(context.runs.with_sizes(values, *state.run), blocks);
-    for (std::size_t b = fold; b < blocks.count(); b += 2) with[b] = all[b];
+    for (std::size_t b = fold; b < blocks.count(); b += 2) with[b] = all[b] - by_noise;
     add_effects(values, all, fold, blocks, state, context, result.effects);
   }
   const auto epochs = static_cast<double>(

@@ -60,6 +60,7 @@ void judge_result(const Work& work, Delivery& delivery, const study::Excerpt& ex
   work.progress("looking for the cause", 0.0);
   verdict.causes = study::rank_causes(excerpt, stated);
   if (const std::string cause = told(verdict.causes); !cause.empty()) verdict.likely_cause = cause;
+  if (auto check = misreading_check(verdict.causes)) verdict.checks.push_back(std::move(*check));
 }
 
 }  // namespace

@@ -275,6 +275,14 @@ std::string told(const std::vector<study::Cause>& causes) {
   return text + ")";
 }
 
+// Fitted noise can hide a gyro whose sign is wrong. What gains as much beside every noise that was tried is no chance.
+std::optional<Check> misreading_check(const std::vector<study::Cause>& causes) {
+  constexpr double kDoubtful = 20.0, kCertain = 200.0;  // of the log-likelihood of two minutes
+  if (causes.empty() || !causes.front().of_samples) return std::nullopt;
+  return Check{"misread_samples", causes.front().gain, kDoubtful, kCertain,
+               fmt::format("the samples are likelier by exp({:.0f}) if they are read otherwise", causes.front().gain)};
+}
+
 Judgement judge(const ProcessResult& result, std::vector<Check> motion) {
   Judgement judgement{std::move(motion)};
   add_innovations(result, judgement.checks);

@@ -40,6 +40,9 @@ class MotionChecks {
 /// The likeliest cause and the next one, as a sentence; empty if there is none.
 [[nodiscard]] std::string told(const std::vector<study::Cause>& causes);
 
+/// Whether the likeliest cause is that the samples are not what the run file says.
+[[nodiscard]] std::optional<Check> misreading_check(const std::vector<study::Cause>& causes);
+
 /// All checks of a run, and the likeliest cause of the failed ones.
 /// @param motion  of the delivered solution, and all other checks made before
 [[nodiscard]] Judgement judge(const ProcessResult& result, std::vector<Check> motion);
