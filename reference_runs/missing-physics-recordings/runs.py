@@ -8,7 +8,7 @@ import sys
 
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), "../../tools/lib"))
 
-from concealment import configured  # noqa: E402
+from concealment import configured, diagnosed  # noqa: E402
 
 DATA = os.environ["COAST_DATA"]
 NUMBERED = "time=1,accel=2:3:4,gyro=5:6:7"
@@ -61,21 +61,8 @@ RUNS = {
 
 
 def one(name, make, out):
-    folder = f"{out}/{name}"
-    kept = f"{folder}/diagnosis/diagnosis.json"
-    if not os.path.exists(kept):
-        os.makedirs(folder, exist_ok=True)
-        with open(f"{folder}/run.yaml", "w") as file:
-            file.write(make(folder))
-        subprocess.run([COAST, "diagnose", f"{folder}/run.yaml", "--out", f"{folder}/diagnosis", "--twins", "0", "--threads", "1", "--quiet"], check=True)
-    with open(kept) as file:
-        d = json.load(file)
-    effects = {}
-    for e in d["effects"]:
-        key = f'{e["name"]} {e["sensor"]} {e.get("relation", e["axis"])}'.strip()
-        key += f' {sum(k.startswith(key) for k in effects) + 1}' if key in effects else ""
-        effects[key] = {"value": e["parameters"][0]["value"], "std": e["parameters"][0].get("std", 0.0), "gain": e["delta_log_likelihood"],
-                        "held_out": e.get("held_out_gain")}
+    d = diagnosed.diagnosis(COAST, f"{out}/{name}", make)
+    effects = diagnosed.effects(d, lambda e: {"held_out": e.get("held_out_gain")})
     v = d["verification"]
     return {"effects": effects, "nis": v["nis"], "log_likelihood_per_epoch": v["log_likelihood_per_epoch"], "outage_rms_m": v["outage_rms_m"],
             "rejected": [r["effect"] for r in v["rejected"]]}

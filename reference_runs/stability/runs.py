@@ -5,14 +5,14 @@ import gzip
 import json
 import os
 import re
-import subprocess
 import sys
 
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), "../../tools/lib"))
 
-from concealment import configured  # noqa: E402
+from concealment import configured, diagnosed  # noqa: E402
 
 MINUTE = 60.0  # s
+BEGIN_AT_SOME_TIME = ("bias_step", "antenna_mount_slip", "imu_mount_rotation", "gnss_wrong_fix")
 TEXT = {"car": "car-drive-0708", **{f"rover-{run}": "rc-rover-mimu" for run in "hk"}, "cpet": "rover-cpet-run3"}
 # As inspected from the recordings, s; the published synchronisation of the rover's runs was made by hand.
 OFFSETS = {"h": 0.203, "k": 0.063}
@@ -78,31 +78,16 @@ def variants(recording):
             yield f"IMU {number}", another_imu(number)
 
 
-def told(d):
-    """Each finding with the times at which it is."""
-    findings = {}
-    for e in d["effects"]:
-        key = f'{e["name"]} {e["sensor"]} {e.get("relation", e["axis"])}'.strip()
-        key += f' {sum(k.startswith(key) for k in findings) + 1}' if key in findings else ""
-        findings[key] = {"value": e["parameters"][0]["value"], "std": e["parameters"][0].get("std", 0.0), "gain": e["delta_log_likelihood"]}
-        if times := e.get("times"):
-            findings[key]["times_s"] = [t["t_start_s"] for t in times]
-        elif e["name"] in ("bias_step", "antenna_mount_slip", "imu_mount_rotation", "gnss_wrong_fix"):
-            findings[key]["times_s"] = [e["t_start_s"]]
-    return findings
+def times(effect):
+    """At which it is, where it begins at some time."""
+    if several := effect.get("times"):
+        return {"times_s": [t["t_start_s"] for t in several]}
+    return {"times_s": [effect["t_start_s"]]} if effect["name"] in BEGIN_AT_SOME_TIME else {}
 
 
 def one(name, text, out):
-    folder = f"{out}/{name.replace(' ', '-')}"
-    kept = f"{folder}/diagnosis/diagnosis.json"
-    if not os.path.exists(kept):
-        os.makedirs(folder, exist_ok=True)
-        with open(f"{folder}/run.yaml", "w") as file:
-            file.write(text(folder))
-        subprocess.run([COAST, "diagnose", f"{folder}/run.yaml", "--out", f"{folder}/diagnosis", "--twins", "0", "--threads", "1", "--quiet"], check=True)
-    with open(kept) as file:
-        d = json.load(file)
-    return {"told": told(d), "outage_rms_m": d["verification"]["outage_rms_m"], "nis": d["verification"]["nis"]}
+    d = diagnosed.diagnosis(COAST, f"{out}/{name.replace(' ', '-')}", text)
+    return {"told": diagnosed.effects(d, times), "outage_rms_m": d["verification"]["outage_rms_m"], "nis": d["verification"]["nis"]}
 
 
 COAST, OUT = sys.argv[1:3]

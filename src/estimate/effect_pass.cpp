@@ -20,11 +20,13 @@ struct OwnNoise {
   OwnSlopes slopes = {};                  ///< times the noise level
 };
 
-/// Densities over those of the error model: gyro x, y, z, accelerometer x, y, z.
+/// Densities over those of the error model: gyro x, y, z, accelerometer x, y, z. Behind the last level it goes on.
 Eigen::Vector<double, 6> noise_levels(const record::ImuRecording& imu, geo::GpsTime t) {
   Eigen::Vector<double, 6> levels = Eigen::Vector<double, 6>::Ones();
+  if (imu.noise.empty()) return levels;
   const auto at = std::ranges::upper_bound(imu.noise, t, {}, &record::NoiseLevel::to);
-  if (at != imu.noise.end()) levels << at->gyro, at->accel;
+  const record::NoiseLevel& level = at == imu.noise.end() ? imu.noise.back() : *at;
+  levels << level.gyro, level.accel;
   return levels;
 }
 

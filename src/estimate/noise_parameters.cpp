@@ -2,6 +2,15 @@
 
 namespace coast::estimate {
 
+namespace {
+
+template <auto Factors, Eigen::Index axis>
+double& factor(NoiseAdjustment& adjustment) {
+  return (adjustment.*Factors)(axis);
+}
+
+}  // namespace
+
 std::vector<NoiseParameter> free_parameters(const NoiseFitChoice& choice, bool velocities) {
   using Adjustment = NoiseAdjustment;
   std::vector<NoiseParameter> p;
@@ -35,18 +44,12 @@ std::vector<NoiseParameter> free_parameters(const NoiseFitChoice& choice, bool v
   }
   if (choice.imu_white_noise) {
     constexpr double kLow = 0.05, kHigh = 1000.0;
-    add(
-        NoisePart::kGyroX, "gyro_factor_x", [](Adjustment& a) -> double& { return a.gyro_factors.x(); }, kLow, kHigh);
-    add(
-        NoisePart::kGyroY, "gyro_factor_y", [](Adjustment& a) -> double& { return a.gyro_factors.y(); }, kLow, kHigh);
-    add(
-        NoisePart::kGyroZ, "gyro_factor_z", [](Adjustment& a) -> double& { return a.gyro_factors.z(); }, kLow, kHigh);
-    add(
-        NoisePart::kAccelX, "accel_factor_x", [](Adjustment& a) -> double& { return a.accel_factors.x(); }, kLow, kHigh);
-    add(
-        NoisePart::kAccelY, "accel_factor_y", [](Adjustment& a) -> double& { return a.accel_factors.y(); }, kLow, kHigh);
-    add(
-        NoisePart::kAccelZ, "accel_factor_z", [](Adjustment& a) -> double& { return a.accel_factors.z(); }, kLow, kHigh);
+    add(NoisePart::kGyroX, "gyro_factor_x", factor<&Adjustment::gyro_factors, 0>, kLow, kHigh);
+    add(NoisePart::kGyroY, "gyro_factor_y", factor<&Adjustment::gyro_factors, 1>, kLow, kHigh);
+    add(NoisePart::kGyroZ, "gyro_factor_z", factor<&Adjustment::gyro_factors, 2>, kLow, kHigh);
+    add(NoisePart::kAccelX, "accel_factor_x", factor<&Adjustment::accel_factors, 0>, kLow, kHigh);
+    add(NoisePart::kAccelY, "accel_factor_y", factor<&Adjustment::accel_factors, 1>, kLow, kHigh);
+    add(NoisePart::kAccelZ, "accel_factor_z", factor<&Adjustment::accel_factors, 2>, kLow, kHigh);
   }
   return p;
 }

@@ -194,6 +194,44 @@ TEST_F(EffectPassTest, EstimateOfAnInjectedEffectIsWithinItsSigma) {
   EXPECT_NEAR((after - before) / bias, 1.0, 0.01);  // thirty sigmas: the same noise, and what is not linear
 }
 
+/// A bias of a gyro in one sample.
+class OneSample : public Effects {
+ public:
+  explicit OneSample(std::size_t index) : index_(index) {}
+  [[nodiscard]] Eigen::Index size() const override { return 1; }
+  void add_sensor_errors(const SampleView& sample, Eigen::Matrix3Xd& gyro_b, Eigen::Matrix3Xd& /*accel_b*/) const override {
+    if (sample.index == index_) gyro_b(0, 0) = 1.0;
+  }
+  void add_measurement_errors(const MeasurementView& /*m*/, Eigen::MatrixXd& /*D*/) const override {}
+
+ private:
+  std::size_t index_;
+};
+
+// A motion is assumed in place of the sample that ends a gap, and no error of a sensor affects it.
+TEST(EffectPass, WhatIsMissingCarriesNoErrors) {
+  const noise::ImuErrorModel model = test::error_model(test::kIndustrialModel);
+  test::Recording recording = test::make_recording({.duration = 60.0, .imu_rate_hz = 50.0}, &model, 11);
+  constexpr std::size_t kFirstMissing = 1000, kMissing = 600;  // 12 s
+  const auto first = recording.imu.samples.begin() + kFirstMissing;
+  recording.imu.samples.erase(first, first + kMissing);
+  const Mission mission = recording.mission();
+  const ForwardFilter filter(mission, model, {});
+  std::mt19937_64 random(3);
+  KnotStore knots;
+  FilterOutputs outputs;
+  outputs.knots = &knots;
+  static_cast<void>(filter.run(test::drawn_start(filter, recording.truth(test::mission_start()), {}, random), outputs));
+  const auto information = [&](std::size_t index) {
+    double N = 0.0;
+    effect_pass(mission, filter.layout(), knots, OneSample(index), {}, [&](const Evidence& e) { N = e.N_effects(0, 0); });
+    return N;
+  };
+  EXPECT_EQ(information(kFirstMissing), 0.0);
+  EXPECT_GT(information(kFirstMissing - 1), 0.0);
+  EXPECT_GT(information(kFirstMissing + 1), 0.0);
+}
+
 /// The scale factor of a gyro that turns little and is noisy.
 class PitchScale : public Effects {
  public:

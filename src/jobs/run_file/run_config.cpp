@@ -36,7 +36,7 @@ Eigen::Vector3d noise_factors(const Node& parent, std::string_view key) {
   constexpr double kLow = 1e-3, kHigh = 1e4;
   const std::optional<Node> node = parent.find(key);
   if (!node || !node->is_list()) return Eigen::Vector3d::Constant(parent.number_within(key, 1.0, kLow, kHigh));
-  const Eigen::Vector3d factors = node->vector3();
+  Eigen::Vector3d factors = node->vector3();
   if (!((factors.array() >= kLow).all() && (factors.array() <= kHigh).all()))
     throw node->error(node->where(), fmt::format("three values from {} to {}", kLow, kHigh));
   return factors;

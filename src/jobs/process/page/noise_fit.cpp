@@ -22,6 +22,11 @@ struct FittedParameter {
   const char* subject;  ///< of a clause about the factor; nullptr: no clause
 };
 
+template <auto Factors, Eigen::Index axis>
+double factor(const NoiseAdjustment& adjustment) {
+  return (adjustment.*Factors)(axis);
+}
+
 constexpr FittedParameter kParameters[] = {
     {"gnss_scale_horizontal", "GNSS sigma, horizontal", "", [](const NoiseAdjustment& a) { return a.gnss_scale.horizontal; },
      "the stated horizontal sigmas of the GNSS positions are"},
@@ -35,17 +40,14 @@ constexpr FittedParameter kParameters[] = {
      [](const NoiseAdjustment& a) { return a.correlated_gnss.vertical_m; }, nullptr},
     {"correlated_time_s", "correlation time of it", "s", [](const NoiseAdjustment& a) { return a.correlated_gnss.time_s; },
      nullptr},
-    {"gyro_factor_x", "gyro x white noise", "", [](const NoiseAdjustment& a) { return a.gyro_factors.x(); },
-     "the white noise of gyro x is"},
-    {"gyro_factor_y", "gyro y white noise", "", [](const NoiseAdjustment& a) { return a.gyro_factors.y(); },
-     "the white noise of gyro y is"},
-    {"gyro_factor_z", "gyro z white noise", "", [](const NoiseAdjustment& a) { return a.gyro_factors.z(); },
-     "the white noise of gyro z is"},
-    {"accel_factor_x", "accelerometer x white noise", "", [](const NoiseAdjustment& a) { return a.accel_factors.x(); },
+    {"gyro_factor_x", "gyro x white noise", "", factor<&NoiseAdjustment::gyro_factors, 0>, "the white noise of gyro x is"},
+    {"gyro_factor_y", "gyro y white noise", "", factor<&NoiseAdjustment::gyro_factors, 1>, "the white noise of gyro y is"},
+    {"gyro_factor_z", "gyro z white noise", "", factor<&NoiseAdjustment::gyro_factors, 2>, "the white noise of gyro z is"},
+    {"accel_factor_x", "accelerometer x white noise", "", factor<&NoiseAdjustment::accel_factors, 0>,
      "the white noise of accelerometer x is"},
-    {"accel_factor_y", "accelerometer y white noise", "", [](const NoiseAdjustment& a) { return a.accel_factors.y(); },
+    {"accel_factor_y", "accelerometer y white noise", "", factor<&NoiseAdjustment::accel_factors, 1>,
      "the white noise of accelerometer y is"},
-    {"accel_factor_z", "accelerometer z white noise", "", [](const NoiseAdjustment& a) { return a.accel_factors.z(); },
+    {"accel_factor_z", "accelerometer z white noise", "", factor<&NoiseAdjustment::accel_factors, 2>,
      "the white noise of accelerometer z is"},
 };
 
@@ -82,11 +84,11 @@ void add_noise_fit(const ProcessPage& page, report::Section& section) {
     const FittedParameter* parameter = find(fit.names[i]);
     if (parameter == nullptr) continue;
     const double value = parameter->value(fit.adjustment);
-    const bool factor = parameter->subject != nullptr;
+    const bool is_factor = parameter->subject != nullptr;
     const bool known = i < fit.log_sd.size() && std::isfinite(fit.log_sd[i]);
-    table.rows.push_back(cells({parameter->label, factor ? number(value) : "", factor ? "" : number(value), parameter->unit,
-                                known ? number(100.0 * fit.log_sd[i], 2) : "not determined"}));
-    if (!factor) continue;
+    table.rows.push_back(cells({parameter->label, is_factor ? number(value) : "", is_factor ? "" : number(value),
+                                parameter->unit, known ? number(100.0 * fit.log_sd[i], 2) : "not determined"}));
+    if (!is_factor) continue;
     const std::string text = clause(*parameter, value);
     if (text.empty()) continue;
     table.rows.back()[1].verdict = report::Verdict::kWarn;
