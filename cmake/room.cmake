@@ -8,6 +8,8 @@ target_compile_features(coast_options INTERFACE cxx_std_20)
 target_compile_options(coast_options INTERFACE $<BUILD_INTERFACE:-Wall -Wextra -Wpedantic -Wconversion -Wshadow -Werror>)
 # Numbers must not depend on the compiler's mood: no contraction to fused multiply-add.
 target_compile_options(coast_options INTERFACE $<BUILD_INTERFACE:-ffp-contract=off>)
+# Code that may be in a shared library (Python) is optimised as if it were not: nobody replaces our functions at run time.
+target_compile_options(coast_options INTERFACE $<BUILD_INTERFACE:-fno-semantic-interposition>)
 # It means headers, and takes for one each source that is compiled as a part of several.
 target_compile_options(coast_options INTERFACE $<BUILD_INTERFACE:$<$<AND:$<BOOL:${COAST_UNITY}>,$<CXX_COMPILER_ID:GNU>>:-Wno-subobject-linkage>>)
 # Products of matrices with fixed sizes up to 15 are computed element by element. By default, sizes from 8 on use the blocked

@@ -176,8 +176,17 @@ Eigen::Vector3d Node::vector3() const {
 std::filesystem::path Node::path() const {
   TreeEntry& e = data_->entries[index_];
   if (e.kind != Kind::kScalar) throw error(describe(e), "a path");
+  if (e.table) return e.text;
   e.is_path = true;
   return resolve_path(*data_, index_);
+}
+
+const std::filesystem::path& Node::file() const {
+  return data_->file;
+}
+
+std::shared_ptr<const record::Table> Node::table() const {
+  return data_->entries[index_].table;
 }
 
 double Node::number(std::string_view key, double fallback) const {

@@ -115,6 +115,11 @@ TreeBuilder::Id TreeBuilder::add_list(Id parent, std::string key, long line) {
 TreeBuilder::Id TreeBuilder::add_scalar(Id parent, std::string key, std::string text, long line) {
   return add_child(*data_, parent, entry(Kind::kScalar, std::move(key), std::move(text), line));
 }
+TreeBuilder::Id TreeBuilder::add_table(Id parent, std::string key, std::shared_ptr<const record::Table> table) {
+  TreeEntry added = entry(Kind::kScalar, std::move(key), table->name, 0);
+  added.table = std::move(table);
+  return add_child(*data_, parent, std::move(added));
+}
 TreeBuilder::Id TreeBuilder::add_null(Id parent, std::string key, long line) {
   return add_child(*data_, parent, entry(Kind::kNull, std::move(key), "", line));
 }

@@ -20,6 +20,7 @@ std::optional<Eigen::Vector3d> positive_vector(const config::Node& map, std::str
 GnssFileOptions GnssFileOptions::from(const config::Node& gnss) {
   GnssFileOptions o;
   o.file = gnss.at("file").path();
+  o.table = gnss.at("file").table();
   o.format = gnss.text("format", "auto");
   o.position = PositionOptions::from(gnss);
   o.time = TimeOptions::from(gnss);
@@ -43,7 +44,7 @@ GnssFileOptions GnssFileOptions::from(const config::Node& gnss) {
 
 record::GnssRecording read_gnss(const GnssFileOptions& options, std::optional<geo::GpsTime> near) {
   // With mapped columns any text is a table, whatever its content.
-  const std::string format = options.format == "auto" && !options.position_columns.empty() ? "csv" : options.format;
+  const std::string format = options.table || (options.format == "auto" && !options.position_columns.empty()) ? "csv" : options.format;
   return format_for(options.file, format, &Format::read_gnss, "a GNSS").read_gnss(options, near);
 }
 

@@ -25,6 +25,7 @@ BinaryLayout binary_from(const config::Node& node) {
 ImuFileOptions ImuFileOptions::from(const config::Node& imu) {
   ImuFileOptions o;
   o.file = imu.at("file").path();
+  o.table = imu.at("file").table();
   o.format = imu.text("format", "auto");
   o.increments = imu.choice("values", {"rates", "increments"}, 0) == 1;
   o.time = TimeOptions::from(imu);
@@ -44,7 +45,7 @@ ImuFileOptions ImuFileOptions::from(const config::Node& imu) {
 
 record::ImuRecording read_imu(const ImuFileOptions& options, std::optional<geo::GpsTime> near) {
   // With mapped columns any text is a table, whatever its content.
-  const std::string format = options.format == "auto" && !options.gyro_columns.empty() ? "csv" : options.format;
+  const std::string format = options.table || (options.format == "auto" && !options.gyro_columns.empty()) ? "csv" : options.format;
   return format_for(options.file, format, &Format::read_imu, "an IMU").read_imu(options, near);
 }
 

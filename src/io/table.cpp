@@ -7,6 +7,8 @@
 #include <cmath>
 #include <cstring>
 #include <limits>
+#include <stdexcept>
+#include <utility>
 
 #include "text.hpp"
 
@@ -57,12 +59,24 @@ std::vector<Column> Column::list_from(const config::Node& node, std::size_t coun
 }
 
 TableReader::TableReader(const std::filesystem::path& path) : lines_(path) {
+  name_ = lines_->name();
   recognise_first_lines();
+}
+
+TableReader::TableReader(std::shared_ptr<const record::Table> table)
+    : name_(table->name), memory_(std::move(table)), header_(memory_->header), columns_(memory_->columns.size()) {
+  const auto& columns = memory_->columns;
+  if (header_.size() != columns.size()) throw std::invalid_argument("a table with as many names as columns");
+  for (std::size_t i = 1; i < columns.size(); ++i)
+    if (columns[i].size() != columns[0].size())
+      throw InputError({name_, 0, fmt::format("{} values of {} and {} of {}", columns[i].size(), header_[i], columns[0].size(), header_[0]),
+                        "columns of equal lengths", ""});
+  if (columns.empty() || columns[0].empty()) throw InputError({name_, 0, "no row of numbers", "a table", ""});
 }
 
 void TableReader::recognise_first_lines() {
   std::string_view line;
-  while (lines_.next(line)) {
+  while (lines_->next(line)) {
     if (is_comment(line)) {
       comments_.emplace_back(line);
       continue;
@@ -77,14 +91,14 @@ void TableReader::recognise_first_lines() {
       continue;
     }
     first_row_ = line;
-    first_row_line_ = lines_.line_number();
+    first_row_line_ = lines_->line_number();
     columns_ = fields_.size();
     // The views in fields_ must not outlive this line.
     fields_.clear();
     break;
   }
   line_ = first_row_line_;
-  if (first_row_.empty()) throw InputError({name(), lines_.line_number(), "no row of numbers", "a table", ""});
+  if (first_row_.empty()) throw InputError({name(), lines_->line_number(), "no row of numbers", "a table", ""});
   const auto names = static_cast<std::size_t>(
       std::distance(std::find_if(header_.rbegin(), header_.rend(), [](const auto& n) { return !n.empty(); }), header_.rend()));
   if (names > columns_)
@@ -94,7 +108,7 @@ void TableReader::recognise_first_lines() {
 void TableReader::take_header(std::string_view line) {
   for (const std::string_view field : fields_) header_.emplace_back(unquoted(field));
   if (std::all_of(header_.begin(), header_.end(), [](const auto& n) { return n.empty(); }))
-    throw InputError({name(), lines_.line_number(), fmt::format("\"{}\"", excerpt(line)), "a header or a row of numbers", ""});
+    throw InputError({name(), lines_->line_number(), fmt::format("\"{}\"", excerpt(line)), "a header or a row of numbers", ""});
 }
 
 bool TableReader::has(std::string_view column) const {
@@ -102,9 +116,13 @@ bool TableReader::has(std::string_view column) const {
 }
 
 std::vector<std::string> TableReader::first_fields() const {
+  std::vector<std::string> texts;
+  if (memory_) {
+    for (const std::vector<double>& column : memory_->columns) texts.push_back(fmt::format("{}", column.front()));
+    return texts;
+  }
   std::vector<std::string_view> fields;
   split(first_row_, delimiter_, fields);
-  std::vector<std::string> texts;
   texts.reserve(fields.size());
   for (const std::string_view field : fields) texts.emplace_back(unquoted(field));
   return texts;
@@ -149,11 +167,15 @@ std::size_t TableReader::number_slot(const Column& column, std::string_view role
   return add_slot(column, role, false);
 }
 std::size_t TableReader::text_slot(const Column& column, std::string_view role) {
+  if (memory_)
+    throw InputError({name_, 0, fmt::format("numbers in column {} ({})", column.text(), role), "text, which only files have",
+                      "Give times as numbers, for instance seconds of week."});
   return add_slot(column, role, true);
 }
 
 std::size_t TableReader::expected_rows() const {
-  return static_cast<std::size_t>(lines_.expected_size() / (first_row_.size() + 1)) + 16;
+  if (memory_) return memory_->columns.front().size();
+  return static_cast<std::size_t>(lines_->expected_size() / (first_row_.size() + 1)) + 16;
 }
 
 InputError TableReader::error(std::string found, std::string expected, std::string what_to_do) const {
@@ -167,22 +189,36 @@ bool TableReader::next_line(std::string_view& line) {
     line_ = first_row_line_;
     return true;
   }
-  while (lines_.next(line)) {
-    line_ = lines_.line_number();
+  while (lines_->next(line)) {
+    line_ = lines_->line_number();
     if (!is_comment(line) && !trimmed(line).empty()) return true;
   }
-  for (const record::Event& event : lines_.events()) events_.push_back(event);
+  for (const record::Event& event : lines_->events()) events_.push_back(event);
   return false;
 }
 
+bool TableReader::next_in_memory() {
+  const auto row = static_cast<std::size_t>(rows_);
+  if (row == memory_->columns.front().size()) return false;
+  finite_ = true;
+  for (const Step& step : plan_) {
+    const double value = memory_->columns[step.field][row];
+    numbers_[step.slot] = value;
+    if (!std::isfinite(value)) finite_ = false;
+  }
+  line_ = ++rows_;
+  return true;
+}
+
 bool TableReader::next() {
+  if (memory_) return next_in_memory();
   std::string_view line;
   if (!next_line(line)) return false;
   const std::size_t previous_length = last_field_length_;
   const bool good = parse(line);
   // A last line without a line feed may be incomplete. Missing fields are detected; a last number shorter than the one above
   // may have lost digits.
-  const bool cut_off = !lines_.terminated() && rows_ > 0 && (!good || last_field_length_ < previous_length);
+  const bool cut_off = !lines_->terminated() && rows_ > 0 && (!good || last_field_length_ < previous_length);
   if (good && !cut_off) {
     ++rows_;
     return true;
@@ -191,7 +227,7 @@ bool TableReader::next() {
     note_tail(line, line_, 1);
   else
     leave_out_the_rest();
-  for (const record::Event& event : lines_.events()) events_.push_back(event);
+  for (const record::Event& event : lines_->events()) events_.push_back(event);
   return false;
 }
 

@@ -27,6 +27,8 @@ class TreeBuilder {
   Id add_map(Id parent, std::string key, long line);
   Id add_list(Id parent, std::string key, long line);
   Id add_scalar(Id parent, std::string key, std::string text, long line);
+  /// Numbers in memory where a file is expected. Its name stands in the resolved tree: from there it cannot be read again.
+  Id add_table(Id parent, std::string key, std::shared_ptr<const record::Table> table);
   /// A key without a value ("key:" or "key: null"): reading it is an error.
   Id add_null(Id parent, std::string key, long line);
 

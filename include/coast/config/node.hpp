@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "coast/record/error.hpp"
+#include "coast/record/table.hpp"
 
 namespace coast::config {
 
@@ -46,6 +47,8 @@ class Node {
   [[nodiscard]] std::vector<double> numbers() const;  ///< a list of finite numbers
   /// A path, relative to the file that contains it; only ${COAST_DATA} is expanded.
   [[nodiscard]] std::filesystem::path path() const;
+  /// Numbers in place of the file that path() names; null for a file.
+  [[nodiscard]] std::shared_ptr<const record::Table> table() const;
 
   // Optional children with defaults; a default that is used is recorded.
   [[nodiscard]] double number(std::string_view key, double fallback) const;
@@ -65,7 +68,8 @@ class Node {
 
   /// The error to throw for this node: "file:line: key: found, expected ... . what to do".
   [[nodiscard]] InputError error(std::string_view found, std::string_view expected, std::string_view what_to_do = "") const;
-  [[nodiscard]] std::string where() const;  ///< "run.yaml:12: imu.rate_hz"
+  [[nodiscard]] const std::filesystem::path& file() const;  ///< of the whole tree, as it was named
+  [[nodiscard]] std::string where() const;                  ///< "run.yaml:12: imu.rate_hz"
 
   /// Records a value (YAML text) that the run estimated or derived under this map. In the resolved file it is a comment: it
   /// shows what was found, and a run from the file estimates it again and gets the same numbers.

@@ -3,6 +3,7 @@
 
 #include <Eigen/Core>
 #include <filesystem>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -49,6 +50,7 @@ struct PositionOptions {
 /// time_s, lat_deg, lon_deg, height_m, sdn_m, sde_m, sdd_m [, vn_mps, ve_mps, vd_mps, sdvn_mps, sdve_mps, sdvd_mps].
 struct GnssFileOptions {
   std::filesystem::path file;
+  std::shared_ptr<const record::Table> table = {};  ///< in place of the file, with the columns of a CSV file
   std::string format = "auto";
   std::vector<Column> time_columns;         ///< empty: the default name
   std::vector<Column> position_columns;     ///< three, or empty: the default names

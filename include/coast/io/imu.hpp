@@ -4,6 +4,7 @@
 #include <Eigen/Core>
 #include <array>
 #include <filesystem>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -43,6 +44,7 @@ struct BinaryLayout {
 /// Without `columns` a CSV file needs the default header: time_s, gyro_x_radps, .., accel_x_mps2, .., [temperature_degC].
 struct ImuFileOptions {
   std::filesystem::path file;
+  std::shared_ptr<const record::Table> table = {};  ///< in place of the file, with the columns of a CSV file
   std::string format = "auto";
   std::vector<Column> time_columns;  ///< empty: the default name
   std::vector<Column> gyro_columns;  ///< three, or empty: the default names

@@ -2,6 +2,7 @@
 // Trajectories from files: references, and the two sides of a comparison.
 
 #include <filesystem>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -35,6 +36,7 @@ struct AttitudeOptions {
 /// SBET times are GPS seconds of week (some programs write UTC seconds of week: `time: {offset_s: 18}`).
 struct ReferenceFileOptions {
   std::filesystem::path file;
+  std::shared_ptr<const record::Table> table = {};  ///< in place of the file, with the columns of a CSV file
   std::string format = "auto";
   std::vector<Column> time_columns;
   std::vector<Column> position_columns;

@@ -3,6 +3,8 @@
 // text formats; only the requested columns are converted.
 
 #include <filesystem>
+#include <memory>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -10,6 +12,7 @@
 #include "coast/config/node.hpp"
 #include "coast/io/input.hpp"
 #include "coast/record/error.hpp"
+#include "coast/record/table.hpp"
 
 namespace coast::io {
 
@@ -40,6 +43,8 @@ class TableReader {
  public:
   /// Opens the file and reads up to the first row.  @throws InputError no rows, or an error of ByteSource
   explicit TableReader(const std::filesystem::path& path);
+  /// Rows of numbers only; a line in a message is a row, counted from 1.  @throws InputError no rows, columns of different lengths
+  explicit TableReader(std::shared_ptr<const record::Table> table);
 
   [[nodiscard]] const std::vector<std::string>& header() const { return header_; }      ///< empty where there is none
   [[nodiscard]] const std::vector<std::string>& comments() const { return comments_; }  ///< those before the first row
@@ -62,7 +67,7 @@ class TableReader {
 
   [[nodiscard]] long line() const { return line_; }
   [[nodiscard]] long rows() const { return rows_; }  ///< returned so far
-  [[nodiscard]] const std::string& name() const { return lines_.name(); }
+  [[nodiscard]] const std::string& name() const { return name_; }
   /// Expected total number of rows, from the lengths of the file and of the first row; for reserving memory.
   [[nodiscard]] std::size_t expected_rows() const;
   /// The error to throw for the current row.
@@ -81,6 +86,7 @@ class TableReader {
   [[nodiscard]] std::size_t add_slot(const Column& column, std::string_view role, bool text);
   [[nodiscard]] std::size_t find(const Column& column, std::string_view role) const;
   void recognise_first_lines();
+  [[nodiscard]] bool next_in_memory();
   void take_header(std::string_view line);
   [[nodiscard]] bool next_line(std::string_view& line);
   [[nodiscard]] bool parse(std::string_view line);
@@ -92,7 +98,9 @@ class TableReader {
   void leave_out_the_rest();
   void note_tail(std::string_view text, long first_line, long count);
 
-  LineReader lines_;
+  std::string name_;
+  std::optional<LineReader> lines_;  ///< of a file
+  std::shared_ptr<const record::Table> memory_;
   char delimiter_ = ',';
   std::vector<std::string> header_, comments_;
   std::string first_row_;
@@ -110,5 +118,10 @@ class TableReader {
   Problem problem_;
   record::Events events_;
 };
+
+/// The table if there is one, else the file.
+[[nodiscard]] inline TableReader table_reader(const std::filesystem::path& file, const std::shared_ptr<const record::Table>& table) {
+  return table ? TableReader(table) : TableReader(file);
+}
 
 }  // namespace coast::io

@@ -43,6 +43,7 @@ struct ArrayStudyConfig {
 
 /// @throws InputError  anything missing, out of range or unknown, with file and line
 [[nodiscard]] ArrayStudyConfig read_array_study(const std::filesystem::path& file);
+[[nodiscard]] ArrayStudyConfig read_array_study(const config::Node& root);
 
 /// The study.yaml of the help page, every line preceded by `indent`.
 [[nodiscard]] std::string array_study_example(const std::string& indent);

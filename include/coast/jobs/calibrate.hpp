@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "coast/config/node.hpp"
 #include "coast/io/imu.hpp"
 #include "coast/jobs/job.hpp"
 #include "coast/noise/calibration.hpp"
@@ -53,6 +54,7 @@ struct CalibrationConfig {
 /// @param input  calibration.yaml, or a self-describing IMU file: then every option has its default
 /// @throws InputError  anything missing, out of range or unknown, with file and line
 [[nodiscard]] CalibrationConfig read_calibrate(const std::filesystem::path& input);
+[[nodiscard]] CalibrationConfig read_calibrate(const config::Node& root);
 /// The calibration.yaml of the help page, every line preceded by `indent`.
 [[nodiscard]] std::string calibration_example(const std::string& indent);
 

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "coast/config/node.hpp"
 #include "coast/diagnose/diagnosis.hpp"
 #include "coast/jobs/run_file.hpp"
 
@@ -21,6 +22,7 @@ struct DiagnosisConfig {
 /// @throws InputError  anything missing, out of range or unknown, with file and line; a run that is tightly coupled, or already
 ///                     has effects
 [[nodiscard]] DiagnosisConfig read_diagnose(const std::filesystem::path& run_yaml);
+[[nodiscard]] DiagnosisConfig read_diagnose(const config::Node& root);
 
 /// Result of the search in the user's own simulation.
 struct SimulationCheck {

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "coast/config/node.hpp"
 #include "coast/jobs/job.hpp"
 #include "coast/noise/estimator_study.hpp"
 
@@ -30,6 +31,7 @@ struct EstimatorStudyConfig {
 
 /// @throws InputError  anything missing, out of range or unknown, with file and line
 [[nodiscard]] EstimatorStudyConfig read_estimator_study(const std::filesystem::path& file);
+[[nodiscard]] EstimatorStudyConfig read_estimator_study(const config::Node& root);
 
 /// The study.yaml of the help page, every line preceded by `indent`.
 [[nodiscard]] std::string estimator_study_example(const std::string& indent);

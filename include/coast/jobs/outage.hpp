@@ -6,6 +6,7 @@
 #include <variant>
 #include <vector>
 
+#include "coast/config/node.hpp"
 #include "coast/jobs/run_file.hpp"
 #include "coast/study/ensemble.hpp"
 
@@ -36,6 +37,7 @@ using StudyConfig = std::variant<SweepStudy, EnsembleStudy>;
 
 /// study.yaml. @throws InputError  anything missing, out of range or unknown, with file and line
 [[nodiscard]] StudyConfig read_outage(const std::filesystem::path& file);
+[[nodiscard]] StudyConfig read_outage(const config::Node& root);
 /// File of the study, for titles.
 [[nodiscard]] const std::filesystem::path& file_of(const StudyConfig& config);
 

@@ -35,6 +35,7 @@ struct PpkConfig {
 /// A run.yaml, of which `gnss: {ppk: ..}` is used, or a file with these keys only.
 /// @throws InputError  with file and line
 [[nodiscard]] PpkConfig read_ppk(const std::filesystem::path& file);
+[[nodiscard]] PpkConfig read_ppk(const config::Node& root);
 
 /// The ppk.yaml of the help page, every line preceded by `indent`.
 [[nodiscard]] std::string ppk_example(const std::string& indent);

@@ -190,7 +190,9 @@ struct ProcessedMission {
   std::vector<record::TrajectoryEpoch> delivered;
 };
 /// Everything in memory: some 500 bytes per epoch.
-[[nodiscard]] ProcessedMission process(const RunConfig& config, Recordings recordings, const Progress& progress);
+/// @param also  receive the epochs of the IMU too, for files
+[[nodiscard]] ProcessedMission process(const RunConfig& config, Recordings recordings, const Progress& progress,
+                                       const TrajectorySinks& also = {});
 
 [[nodiscard]] std::vector<std::string> files_of(const RunConfig& config);
 

@@ -94,6 +94,7 @@ struct RunConfig {
 
 /// @throws InputError  anything missing, out of range or unknown, with file and line
 [[nodiscard]] RunConfig read_run_config(const std::filesystem::path& file);
+[[nodiscard]] RunConfig read_run_config(const config::Node& root);
 
 /// Content of all input files of a run.
 struct Recordings {

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "coast/config/node.hpp"
 #include "coast/jobs/job.hpp"
 #include "coast/simulate/scenario.hpp"
 
@@ -20,6 +21,7 @@ struct SimulationConfig {
 /// @param seed  instead of the scenario's
 /// @throws InputError  anything missing, out of range or unknown, with file and line; a scenario without an error model
 [[nodiscard]] SimulationConfig read_simulate(const std::filesystem::path& file, std::optional<std::uint64_t> seed = {});
+[[nodiscard]] SimulationConfig read_simulate(const config::Node& root, std::optional<std::uint64_t> seed = {});
 
 struct SimulationResult {
   simulate::SimulatedMission mission;

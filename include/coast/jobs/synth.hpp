@@ -51,6 +51,7 @@ struct ArrayConfig {
 
 /// @throws InputError  anything missing, out of range or unknown, with file and line
 [[nodiscard]] ArrayConfig read_synth(const std::filesystem::path& file);
+[[nodiscard]] ArrayConfig read_synth(const config::Node& root);
 
 /// The array.yaml of the help page, every line preceded by `indent`.
 [[nodiscard]] std::string array_example(const std::string& indent);

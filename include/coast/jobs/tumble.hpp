@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "coast/config/node.hpp"
 #include "coast/io/imu.hpp"
 #include "coast/jobs/job.hpp"
 #include "coast/record/imu.hpp"
@@ -24,6 +25,7 @@ struct TumbleConfig {
 
 /// @throws InputError  anything missing, out of range or unknown, with file and line
 [[nodiscard]] TumbleConfig read_tumble(const std::filesystem::path& file);
+[[nodiscard]] TumbleConfig read_tumble(const config::Node& root);
 /// The tumble.yaml of the help page, every line preceded by `indent`.
 [[nodiscard]] std::string tumble_example(const std::string& indent);
 

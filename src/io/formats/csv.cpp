@@ -31,7 +31,7 @@ std::vector<Column> three_if_present(const TableReader& table, const std::array<
 
 record::ImuRecording read_imu_columns(const ImuFileOptions& given, Format::Near near) {
   ImuFileOptions o = given;
-  TableReader table(o.file);
+  TableReader table = table_reader(o.file, o.table);
   default_time_columns(table, o.time, o.time_columns);
   if (o.gyro_columns.empty()) {
     o.gyro_columns = {"gyro_x_radps", "gyro_y_radps", "gyro_z_radps"};
@@ -43,7 +43,7 @@ record::ImuRecording read_imu_columns(const ImuFileOptions& given, Format::Near 
 
 record::GnssRecording read_gnss_columns(const GnssFileOptions& given, Format::Near near) {
   GnssFileOptions o = given;
-  TableReader table(o.file);
+  TableReader table = table_reader(o.file, o.table);
   default_time_columns(table, o.time, o.time_columns);
   if (o.position_columns.empty()) {
     o.position_columns = {"lat_deg", "lon_deg", "height_m"};
@@ -58,7 +58,7 @@ record::GnssRecording read_gnss_columns(const GnssFileOptions& given, Format::Ne
 
 record::Trajectory read_reference_csv(const ReferenceFileOptions& given, Format::Near near) {
   ReferenceFileOptions o = given;
-  TableReader table(o.file);
+  TableReader table = table_reader(o.file, o.table);
   default_time_columns(table, o.time, o.time_columns);
   if (o.position_columns.empty()) {
     o.position_columns = {"lat_deg", "lon_deg", "height_m"};
@@ -74,7 +74,7 @@ record::ImuRecording read_imu_csv(const ImuFileOptions& given, Format::Near near
   try {
     return read_imu_columns(given, near);
   } catch (const InputError&) {
-    refuse_other_kind(given.file, FileKind::Content::kImu, "a table of an IMU");
+    if (!given.table) refuse_other_kind(given.file, FileKind::Content::kImu, "a table of an IMU");
     throw;
   }
 }
@@ -83,7 +83,7 @@ record::GnssRecording read_gnss_csv(const GnssFileOptions& given, Format::Near n
   try {
     return read_gnss_columns(given, near);
   } catch (const InputError&) {
-    refuse_other_kind(given.file, FileKind::Content::kPositions, "a table of positions");
+    if (!given.table) refuse_other_kind(given.file, FileKind::Content::kPositions, "a table of positions");
     throw;
   }
 }

@@ -106,10 +106,13 @@ std::string array_study_example(const std::string& indent) {
 }
 
 ArrayStudyConfig read_array_study(const std::filesystem::path& file) {
+  return read_array_study(io::load_yaml(file));
+}
+
+ArrayStudyConfig read_array_study(const Node& root) {
   ArrayStudyConfig config;
-  config.file = file;
-  config.root = io::load_yaml(file);
-  const Node& root = config.root;
+  config.file = root.file();
+  config.root = root;
   static_cast<void>(root.choice("schema", {"coast.array_study/1"}, 0));
   config.kind = static_cast<ArrayStudyKind>(root.at("kind").choice({"models", "merges", "outages", "defects"}));
   config.runs = count_at(root, "runs", 100, 1, 100000);

@@ -112,17 +112,18 @@ noise::CalibrationOptions options_from(const Node& root) {
   return options;
 }
 
-CalibrationConfig from_yaml(const std::filesystem::path& file) {
-  const Node root = io::load_yaml(file);
+}  // namespace
+
+CalibrationConfig read_calibrate(const Node& root) {
   CalibrationConfig config;
-  config.file = file;
+  config.file = root.file();
   static_cast<void>(root.choice("schema", {"coast.calibration_run/1"}, 0));
   const Node records = root.at("records");
   for (const Node& item : records.items()) config.records.push_back(record_from(item));
   if (config.records.empty()) throw records.error("an empty list", "at least one {file: ..}");
   if (const auto others = root.find("tested_on"))
     for (const Node& item : others->items()) config.tested_on.push_back(record_from(item));
-  config.sensor = root.text("sensor", file.stem().string());
+  config.sensor = root.text("sensor", config.file.stem().string());
   config.axes = axes_from(root);
   config.common = options_from(root);
   for (const Sensor sensor : {Sensor::kGyro, Sensor::kAccel}) {
@@ -134,10 +135,10 @@ CalibrationConfig from_yaml(const std::filesystem::path& file) {
       if (const auto stated = bias->find(name)) own.turn_on_bias = sigma_from(*stated, sensor);
   }
   root.refuse_unasked();
+  for (const auto* list : {&config.records, &config.tested_on})
+    for (const CalibrationRecord& record : *list) io::note_read(record.file.file);
   return config;
 }
-
-}  // namespace
 
 std::string calibration_example(const std::string& indent) {
   return indented(kCalibrationExample, indent);
@@ -157,13 +158,9 @@ noise::CalibrationOptions CalibrationConfig::options(Sensor which) const {
 
 CalibrationConfig read_calibrate(const std::filesystem::path& input) {
   const std::string extension = input.extension().string();
+  if (extension == ".yaml" || extension == ".yml" || std::filesystem::is_directory(input))
+    return read_calibrate(io::load_yaml(input));
   CalibrationConfig config;
-  if (extension == ".yaml" || extension == ".yml" || std::filesystem::is_directory(input)) {
-    config = from_yaml(input);
-    for (const auto* records : {&config.records, &config.tested_on})
-      for (const CalibrationRecord& record : *records) io::note_read(record.file.file);
-    return config;
-  }
   config.file = input;
   config.sensor = input.stem().string();
   config.axes = all_axes();

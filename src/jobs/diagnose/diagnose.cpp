@@ -94,8 +94,12 @@ std::optional<SimulationCheck> check_simulation(const DiagnosisConfig& config, c
 }  // namespace
 
 DiagnosisConfig read_diagnose(const std::filesystem::path& run_yaml) {
+  return read_diagnose(io::load_yaml(run_yaml));
+}
+
+DiagnosisConfig read_diagnose(const config::Node& root) {
   DiagnosisConfig config;
-  config.run = read_run_config(run_yaml);
+  config.run = read_run_config(root);
   require_positions(config.run);
   return config;
 }

@@ -191,11 +191,14 @@ std::string EstimatorStudyConfig::unit(const std::string& of_parameter) const {
 }
 
 EstimatorStudyConfig read_estimator_study(const std::filesystem::path& file) {
-  const Node root = io::load_yaml(file);
+  return read_estimator_study(io::load_yaml(file));
+}
+
+EstimatorStudyConfig read_estimator_study(const Node& root) {
   EstimatorStudyConfig config;
-  config.file = file;
+  config.file = root.file();
   static_cast<void>(root.choice("schema", {"coast.estimator_study/1"}, 0));
-  config.title = root.text("title", file.stem().string());
+  config.title = root.text("title", config.file.stem().string());
   config.signal_unit = root.text("signal_unit", "");
   config.study = study_from(root);
   if (const auto readings = root.find("readings"))

@@ -111,7 +111,10 @@ EnsembleStudy ensemble_study(const Node& root) {
 }  // namespace
 
 StudyConfig read_outage(const std::filesystem::path& file) {
-  const Node root = io::load_yaml(file);
+  return read_outage(io::load_yaml(file));
+}
+
+StudyConfig read_outage(const Node& root) {
   static_cast<void>(root.text("schema", "coast.study/1"));
   StudyConfig study;
   if (root.find("scenario"))
@@ -119,7 +122,7 @@ StudyConfig read_outage(const std::filesystem::path& file) {
   else
     study = sweep_study(root);
   root.refuse_unasked();
-  std::visit([&file](auto& config) { config.file = file; }, study);
+  std::visit([&root](auto& config) { config.file = root.file(); }, study);
   return study;
 }
 

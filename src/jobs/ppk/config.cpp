@@ -168,7 +168,10 @@ PpkConfig PpkConfig::from(const Node& map) {
 }
 
 PpkConfig read_ppk(const std::filesystem::path& file) {
-  const Node root = io::load_yaml(file);
+  return read_ppk(io::load_yaml(file));
+}
+
+PpkConfig read_ppk(const Node& root) {
   if (const auto gnss = root.find("gnss")) {
     const Node map = gnss->at("ppk");
     PpkConfig config = PpkConfig::from(map);

@@ -106,12 +106,18 @@ ProcessResult process(const RunConfig& config, Recordings recordings, const Traj
   return result;
 }
 
-ProcessedMission process(const RunConfig& config, Recordings recordings, const Progress& progress) {
+ProcessedMission process(const RunConfig& config, Recordings recordings, const Progress& progress,
+                         const TrajectorySinks& also) {
   ProcessedMission mission;
   TrajectoryOutput forward(config.output, [&](const record::TrajectoryEpoch& epoch) { mission.forward.push_back(epoch); });
   TrajectoryOutput delivered(config.output, [&](const record::TrajectoryEpoch& epoch) { mission.delivered.push_back(epoch); });
-  const TrajectorySinks sinks{[&](const record::TrajectoryEpoch& epoch) { forward.add(epoch); },
-                              [&](const record::TrajectoryEpoch& epoch) { delivered.add(epoch); }};
+  const auto both = [](TrajectoryOutput& output, const record::EpochSink& other) {
+    return [&output, &other](const record::TrajectoryEpoch& epoch) {
+      output.add(epoch);
+      if (other) other(epoch);
+    };
+  };
+  const TrajectorySinks sinks{both(forward, also.forward), both(delivered, also.delivered)};
   mission.result = process(config, std::move(recordings), sinks, progress);
   return mission;
 }

@@ -288,10 +288,13 @@ study::OutageSweep sweep_from(const Node& node, const RunConfig& run) {
 }
 
 RunConfig read_run_config(const std::filesystem::path& file) {
+  return read_run_config(io::load_yaml(file));
+}
+
+RunConfig read_run_config(const Node& root) {
   RunConfig run;
-  run.file = file;
-  run.root = io::load_yaml(file);
-  const Node& root = run.root;
+  run.file = root.file();
+  run.root = root;
   static_cast<void>(root.text("schema", "coast.run/1"));
   run.accept = root.flag("accept", false);
   estimate::NoiseFitChoice choice;

@@ -7,12 +7,16 @@
 namespace coast::jobs {
 
 SimulationConfig read_simulate(const std::filesystem::path& file, std::optional<std::uint64_t> seed) {
+  return read_simulate(io::load_yaml(file), seed);
+}
+
+SimulationConfig read_simulate(const config::Node& root, std::optional<std::uint64_t> seed) {
   SimulationConfig config;
-  config.file = file;
-  config.scenario = simulate::Scenario::from(io::load_yaml(file), [](const auto& other) { return io::load_yaml(other); });
+  config.file = root.file();
+  config.scenario = simulate::Scenario::from(root, [](const auto& other) { return io::load_yaml(other); });
   if (seed) config.scenario.seed = *seed;
   if (!config.scenario.error_model)
-    throw InputError({file.string(), 0, "a scenario without imu.error_model", "an error model",
+    throw InputError({config.file.string(), 0, "a scenario without imu.error_model", "an error model",
                       "The recording would have no run.yaml that processes it."});
   return config;
 }

@@ -190,10 +190,13 @@ std::string array_example(const std::string& indent) {
 }
 
 ArrayConfig read_synth(const std::filesystem::path& file) {
+  return read_synth(io::load_yaml(file));
+}
+
+ArrayConfig read_synth(const Node& root) {
   ArrayConfig config;
-  config.file = file;
-  config.root = io::load_yaml(file);
-  const Node& root = config.root;
+  config.file = root.file();
+  config.root = root;
   static_cast<void>(root.choice("schema", {"coast.array/1"}, 0));
   read_time(root, config);
   read_imus(root, config);

@@ -53,11 +53,14 @@ std::string tumble_example(const std::string& indent) {
 }
 
 TumbleConfig read_tumble(const std::filesystem::path& file) {
-  const Node root = io::load_yaml(file);
+  return read_tumble(io::load_yaml(file));
+}
+
+TumbleConfig read_tumble(const Node& root) {
   TumbleConfig config;
-  config.file = file;
+  config.file = root.file();
   static_cast<void>(root.choice("schema", {"coast.tumble/1"}, 0));
-  config.sensor = root.text("sensor", file.stem().string());
+  config.sensor = root.text("sensor", config.file.stem().string());
   config.imu = io::ImuFileOptions::from(root.at("imu"));
   read_place(root, config);
   root.refuse_unasked();

@@ -1,0 +1,131 @@
+#include "arrays.hpp"
+
+#include <pybind11/numpy.h>
+
+#include <span>
+
+#include "coast/geo/earth.hpp"
+#include "coast/geo/rotation.hpp"
+#include "coast/geo/units.hpp"
+
+namespace coast::python {
+
+namespace py = pybind11;
+
+namespace {
+
+/// An array that is filled row by row.
+template <class Number>
+class Rows {
+ public:
+  explicit Rows(std::size_t n) : array_(static_cast<py::ssize_t>(n)), data_(array_.mutable_data()) {}
+  void operator()(std::size_t i, Number value) { data_[i] = value; }
+  [[nodiscard]] py::object array() const { return array_; }
+
+ private:
+  py::array_t<Number> array_;
+  Number* data_;
+};
+
+class Rows3 {
+ public:
+  explicit Rows3(std::size_t n)
+      : array_({static_cast<py::ssize_t>(n), py::ssize_t{3}}), data_(array_.mutable_data()) {}
+  void operator()(std::size_t i, const Eigen::Vector3d& value) {
+    for (std::size_t k = 0; k < 3; ++k) data_[3 * i + k] = value[static_cast<Eigen::Index>(k)];
+  }
+  [[nodiscard]] py::object array() const { return array_; }
+
+ private:
+  py::array_t<double> array_;
+  double* data_;
+};
+
+Eigen::Vector3d sd_of(const Eigen::Matrix3d& cov) {
+  return cov.diagonal().cwiseMax(0.0).cwiseSqrt();
+}
+
+py::object array_of(const std::vector<double>& values) {
+  return py::array_t<double>(static_cast<py::ssize_t>(values.size()), values.data());
+}
+
+}  // namespace
+
+py::dict trajectory_arrays(const std::vector<record::TrajectoryEpoch>& epochs) {
+  const std::size_t n = epochs.size();
+  Rows<std::int64_t> time(n);
+  Rows<double> latitude(n), longitude(n), height(n);
+  Rows3 velocity(n), attitude(n), sd_position(n), sd_velocity(n), sd_attitude(n);
+  for (std::size_t i = 0; i < n; ++i) {
+    const record::TrajectoryEpoch& epoch = epochs[i];
+    const geo::Geodetic p = geo::geodetic_from_ecef(epoch.nav.r_eb_e);
+    const Eigen::Matrix3d C_e_n = geo::C_n_e(p).transpose();
+    const geo::Euler angles = geo::euler_from_dcm(C_e_n * epoch.nav.q_b_e.toRotationMatrix());
+    const Eigen::Matrix3d J = geo::euler_jacobian(angles);
+    time(i, epoch.nav.t.nanoseconds());
+    latitude(i, p.latitude / geo::kDegree);
+    longitude(i, p.longitude / geo::kDegree);
+    height(i, p.height);
+    velocity(i, C_e_n * epoch.nav.v_eb_e);
+    attitude(i, Eigen::Vector3d(angles.roll, angles.pitch, angles.yaw) / geo::kDegree);
+    sd_position(i, sd_of(epoch.cov.position));
+    sd_velocity(i, sd_of(epoch.cov.velocity));
+    sd_attitude(i, sd_of(J * epoch.cov.attitude * J.transpose()) / geo::kDegree);
+  }
+  py::dict arrays;
+  arrays["time_ns"] = time.array();
+  arrays["latitude"] = latitude.array();
+  arrays["longitude"] = longitude.array();
+  arrays["height"] = height.array();
+  arrays["velocity_n"] = velocity.array();
+  arrays["attitude"] = attitude.array();
+  arrays["sd_position_n"] = sd_position.array();
+  arrays["sd_velocity_n"] = sd_velocity.array();
+  arrays["sd_attitude"] = sd_attitude.array();
+  return arrays;
+}
+
+py::dict innovation_arrays(const std::vector<estimate::InnovationRecord>& innovations) {
+  const std::size_t n = innovations.size();
+  Rows<std::int64_t> time(n);
+  Rows<int> dof(n);
+  Rows<bool> used(n);
+  Rows<double> nis(n);
+  Rows3 innovation(n), sd(n);
+  py::list kinds;
+  for (std::size_t i = 0; i < n; ++i) {
+    const estimate::InnovationRecord& one = innovations[i];
+    time(i, one.t.nanoseconds());
+    dof(i, one.dof);
+    used(i, one.used);
+    nis(i, one.nis);
+    innovation(i, one.nu);
+    sd(i, one.sd);
+    kinds.append(estimate::name(one.kind));
+  }
+  py::dict arrays;
+  arrays["time_ns"] = time.array();
+  arrays["kind"] = kinds;
+  arrays["used"] = used.array();
+  arrays["dof"] = dof.array();
+  arrays["innovation"] = innovation.array();
+  arrays["sd"] = sd.array();
+  arrays["nis"] = nis.array();
+  return arrays;
+}
+
+py::dict state_arrays(const std::vector<jobs::StateTrack>& states) {
+  py::dict arrays;
+  for (const jobs::StateTrack& state : states) {
+    py::dict track;
+    track["seconds"] = array_of(state.seconds);
+    track["forward"] = array_of(state.forward);
+    track["forward_sd"] = array_of(state.forward_sd);
+    track["smoothed"] = array_of(state.smoothed);
+    track["smoothed_sd"] = array_of(state.smoothed_sd);
+    arrays[py::str(state.name)] = track;
+  }
+  return arrays;
+}
+
+}  // namespace coast::python

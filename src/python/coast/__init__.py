@@ -1,0 +1,19 @@
+"""coast: post-mission INS/GNSS trajectories.
+
+>>> import coast
+>>> result = coast.process("run.yaml")
+>>> result.verdict
+'good'
+>>> result.trajectory.position_sd.max("time")
+"""
+
+from ._coast import __version__
+from .errors import CoastError, InputError, NumericalError, OutputError, UnusableResult
+from .jobs import calibrate, compare, diagnose, inspect, outage, ppk, process, simulate, synth
+from .results import ProcessResult, Result
+from .tables import Table
+
+__all__ = [
+    "CoastError", "InputError", "NumericalError", "OutputError", "ProcessResult", "Result", "Table", "UnusableResult",
+    "__version__", "calibrate", "compare", "diagnose", "inspect", "outage", "ppk", "process", "simulate", "synth",
+]
