@@ -62,7 +62,7 @@ void BackwardRecursion::through_transition(const Knot& knot) {
   const auto ns = knot.Phi_n.cols();
   // Phi = [Phi_n; 0 D]: navigation rows dense, the others by their blocks.
   Eigen::MatrixXd r_rest = r_.tail(rest);
-  blocks_.over(knot.interval).apply_transposed(r_rest);
+  blocks_.over(knot.interval, knot.renews_gnss_error).apply_transposed(r_rest);
   const Eigen::VectorXd through_nav = knot.Phi_n.transpose() * r_.head<kNav>();
   r_.setZero();
   r_.tail(rest) = r_rest;

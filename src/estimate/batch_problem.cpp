@@ -213,7 +213,7 @@ void BatchProblem::add_transition(std::size_t knot, const BatchStates& states, c
 const Eigen::MatrixXd& BatchProblem::transition_rows(const Propagation& arrived) {
   const Eigen::Index rest = layout_.size() - kNav;
   Eigen::MatrixXd all = Eigen::MatrixXd::Identity(layout_.size(), layout_.size());
-  blocks_.over(arrived.elapsed()).apply(all.bottomRightCorner(rest, rest));
+  blocks_.over(arrived.elapsed(), arrived.renewed_gnss_error()).apply(all.bottomRightCorner(rest, rest));
   all.topLeftCorner(kNav, arrived.Phi_n().cols()) = arrived.Phi_n();
   Phi_ = all(unknowns_.at_knots(), Eigen::all);
   return Phi_;

@@ -175,7 +175,7 @@ class EffectRecursion {
     if (M.cols() == 0) return;
     const auto rest = layout_.size() - kNav;
     const Eigen::MatrixXd nav = knot.Phi_n.transpose() * M.topRows<kNav>();
-    blocks_.over(knot.interval).apply_transposed(M.bottomRows(rest));
+    blocks_.over(knot.interval, knot.renews_gnss_error).apply_transposed(M.bottomRows(rest));
     M.topRows<kNav>().setZero();
     M.topRows(nav.rows()) += nav;
   }

@@ -140,6 +140,7 @@ void ForwardPass::close_interval() {
   check_finite();
   if (keeps_knots() && have_knot_) {
     knot_.interval = propagation_.elapsed();
+    knot_.renews_gnss_error = propagation_.renewed_gnss_error();
     knot_.Phi_n = propagation_.Phi_n();
     deliver_knot();
   }
@@ -177,6 +178,7 @@ void ForwardPass::knot() {
   knot_.next_sample = cursor_.next_sample;
   knot_.remainder = cursor_.remainder;
   knot_.interval = 0.0;
+  knot_.renews_gnss_error = false;
   knot_.Phi_n.resize(kNav, 0);
 }
 

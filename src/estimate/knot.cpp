@@ -83,7 +83,7 @@ class Unpacker {
 };
 
 std::size_t nominal_size(Eigen::Index n) {
-  return static_cast<std::size_t>(2 + 10 + n + 7 + 1 + 7 + 1);
+  return static_cast<std::size_t>(2 + 10 + n + 7 + 1 + 7 + 2);
 }
 
 std::size_t packed_size(const Knot& knot) {
@@ -106,6 +106,7 @@ Knot unpack_nominal(Unpacker& unpack) {
   knot.next_sample = static_cast<std::size_t>(unpack.integer());
   knot.remainder = unpack.increment();
   knot.interval = unpack.real();
+  knot.renews_gnss_error = unpack.integer() != 0;
   return knot;
 }
 
@@ -132,6 +133,7 @@ void KnotStore::append(const Knot& knot) {
   pack.integer(static_cast<std::int64_t>(knot.next_sample));
   pack.increment(knot.remainder);
   pack.real(knot.interval);
+  pack.integer(knot.renews_gnss_error ? 1 : 0);
   pack.symmetric(knot.P_post);
   pack.integer(knot.Phi_n.cols());
   pack.matrix(knot.Phi_n);

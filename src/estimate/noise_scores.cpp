@@ -64,6 +64,17 @@ struct Disturbances {
   Eigen::Vector3d behind, behind_t;  ///< the same of all later knots, times exp(-t/tau); times t/tau exp(-t/tau)
 };
 
+/// How much of the correlated GNSS error is left behind an interval, and the same by the logarithm of its time.
+struct Decay {
+  double phi, slope;
+};
+
+Decay decay_of(const Knot& knot, const CorrelatedGnss& gnss) {
+  if (knot.renews_gnss_error) return {0.0, 0.0};
+  const double steps = knot.interval / gnss.time_s;
+  return {std::exp(-steps), steps * std::exp(-steps)};
+}
+
 class BackwardScores {
  public:
   explicit BackwardScores(const NoiseModel& model)
@@ -84,7 +95,7 @@ class BackwardScores {
       recursion_.through_transition(knot.knot);
       return;
     }
-    add_driving_noise_of_gnss(knot.knot.interval);
+    add_driving_noise_of_gnss(knot.knot);
     recursion_.through_transition(knot.knot);
     add_decay_of_gnss(knot);
   }
@@ -127,29 +138,29 @@ class BackwardScores {
     if (place_(part) >= 0) gradient_(place_(part)) += score;
   }
   // q = s^2 (1 - phi^2)
-  void add_driving_noise_of_gnss(double interval) {
+  void add_driving_noise_of_gnss(const Knot& knot) {
     const CorrelatedGnss& gnss = model_.adjustment.correlated_gnss;
-    const double steps = interval / gnss.time_s;
-    const double phi2 = std::exp(-2.0 * steps);
+    const auto [phi, slope] = decay_of(knot, gnss);
+    const double driven = knot.renews_gnss_error ? 1.0 : -std::expm1(-2.0 * knot.interval / gnss.time_s);
     for (int axis = 0; axis < 3; ++axis) {
       const Index g = *model_.layout.gnss_error() + axis;
       const double s = axis < 2 ? gnss.horizontal_m : gnss.vertical_m;
       const double half = 0.5 * (recursion_.r()(g) * recursion_.r()(g) - recursion_.N()(g, g)) * s * s;
-      add(axis < 2 ? NoisePart::kCorrelatedHorizontal : NoisePart::kCorrelatedVertical, -2.0 * std::expm1(-2.0 * steps) * half);
-      add(NoisePart::kCorrelatedTime, -2.0 * steps * phi2 * half);
+      add(axis < 2 ? NoisePart::kCorrelatedHorizontal : NoisePart::kCorrelatedVertical, 2.0 * driven * half);
+      add(NoisePart::kCorrelatedTime, -2.0 * phi * slope * half);
     }
   }
   // dphi = phi dt/tau; r and N are now those before the interval, Phi' r and Phi' N Phi.
   void add_decay_of_gnss(const RecordedKnot& knot) {
-    const double steps = knot.knot.interval / model_.adjustment.correlated_gnss.time_s;
+    const auto [phi, slope] = decay_of(knot.knot, model_.adjustment.correlated_gnss);
+    const double steps = phi > 0.0 ? slope / phi : 0.0;
     const Eigen::VectorXd& r = recursion_.r();
     for (int axis = 0; axis < 3; ++axis) {
       const Index g = *model_.layout.gnss_error() + axis;
       const double along = r(g) * knot.P_gnss.row(axis).dot(r) - knot.P_gnss.row(axis).dot(recursion_.N().col(g));
       add(NoisePart::kCorrelatedTime, steps * (along - r(g) * knot.knot.post.x(g)));
     }
-    const double phi = std::exp(-steps);
-    behind_t_ = phi * (behind_t_ + steps * behind_);
+    behind_t_ = phi * behind_t_ + slope * behind_;
     behind_ *= phi;
   }
 
@@ -190,13 +201,12 @@ class InformationPass {
   void through_interval(const RecordedKnot& knot, const Disturbances& at) {
     const auto rest = d_.rows() - kNav;
     nav_.noalias() = knot.knot.Phi_n * d_.topRows(knot.knot.Phi_n.cols());
-    blocks_.over(knot.knot.interval).apply(d_.bottomRows(rest));
+    blocks_.over(knot.knot.interval, knot.knot.renews_gnss_error).apply(d_.bottomRows(rest));
     d_.topRows<kNav>() = nav_;
     for (std::size_t i = 0; i < kWhiteNoise.size(); ++i)
       if (const Index column = place_(kWhiteNoise[i]); column >= 0) d_.col(column).head<kNav>() += 2.0 * at.white[i];
-    const double steps = knot.knot.interval / model_.adjustment.correlated_gnss.time_s;
-    const double phi = std::exp(-steps);
-    before_t_ = phi * (before_t_ + steps * before_);
+    const auto [phi, slope] = decay_of(knot.knot, model_.adjustment.correlated_gnss);
+    before_t_ = phi * before_t_ + slope * before_;
     before_ *= phi;
   }
 

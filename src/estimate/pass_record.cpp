@@ -23,6 +23,7 @@ void PassRecord::add(const Knot& knot, const AxisNoise& white, const std::option
   to.knot.post = knot.post;
   to.knot.updates = knot.updates;
   to.knot.interval = knot.interval;
+  to.knot.renews_gnss_error = knot.renews_gnss_error;
   to.knot.Phi_n = knot.Phi_n;
   to.measurements.swap(pending_);
   pending_.clear();

@@ -100,7 +100,13 @@ void Propagation::add_gap_noise(Eigen::MatrixXd& P) {
 
 void Propagation::close(Eigen::MatrixXd& P) {
   fold();
-  transition_.propagate_covariance(P);
+  renewed_gnss_error_ = layout_.gnss_error() && new_ambiguities_at(mission_, navigator_.nav().t);
+  transition_.propagate_covariance(P, renewed_gnss_error_);
+  if (renewed_gnss_error_) {
+    Eigen::VectorXd x = navigator_.x();
+    x.segment<3>(*layout_.gnss_error()).setZero();
+    navigator_.correct(navigator_.nav(), x);
+  }
   add_gap_noise(P);
   if (const Restart* at = restart_at(mission_, navigator_.nav().t)) restart(*at, P);
 }
@@ -128,6 +134,14 @@ void Propagation::restart(const Restart& at, Eigen::MatrixXd& P) {
     tie_position_to_fixes(layout_, P);
   }
   navigator_.correct(nav, navigator_.x());
+}
+
+bool new_ambiguities_at(const Mission& mission, geo::GpsTime t) {
+  const std::vector<record::GnssFix>& fixes = mission.gnss.fixes;
+  const geo::GpsTime tag = t + mission.time_offset_s;
+  const auto fix = std::ranges::lower_bound(fixes, tag - kTimeTolerance, {}, &record::GnssFix::t);
+  if (fix == fixes.begin() || fix == fixes.end() || fix->t > tag + kTimeTolerance) return false;
+  return (fix->quality == record::FixQuality::kFixed) != (std::prev(fix)->quality == record::FixQuality::kFixed);
 }
 
 const Restart* restart_at(const Mission& mission, geo::GpsTime t) {

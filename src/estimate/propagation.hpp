@@ -74,6 +74,8 @@ class Propagation {
   [[nodiscard]] const NavCov& Q_gyro() const { return transition_.Q_gyro(); }
   [[nodiscard]] const AxisNoise& Q_axes() const { return transition_.Q_axes(); }
   [[nodiscard]] double elapsed() const { return transition_.elapsed(); }
+  /// Whether the GNSS error was renewed at the end of the last closed interval.
+  [[nodiscard]] bool renewed_gnss_error() const { return renewed_gnss_error_; }
   [[nodiscard]] const Navigator& navigator() const { return navigator_; }
 
  private:
@@ -90,10 +92,14 @@ class Propagation {
   double missing_share_ = 0.0;   ///< of the current sample
   double gap_ = 0.0;             ///< s of missing IMU in the interval
   double gap_before_ = 0.0;      ///< s of the same gap before the interval
+  bool renewed_gnss_error_ = false;
 };
 
 /// The restart at that instant, if there is one.
 [[nodiscard]] const Restart* restart_at(const Mission& mission, geo::GpsTime t);
+
+/// Whether the fix of that instant has another set of ambiguities than the one before it: one of them is fixed, the other not.
+[[nodiscard]] bool new_ambiguities_at(const Mission& mission, geo::GpsTime t);
 
 /// Fraction of an interval between two samples that was not measured; jitter of the tags is ignored.
 [[nodiscard]] double missing_share(const record::ImuRecording& imu, double span);

@@ -148,9 +148,11 @@ BlockTransitions::BlockTransitions(const StateLayout& layout)
   Q_d_ = Eigen::MatrixXd::Zero(diagonal_.size(), widest);
 }
 
-const BlockTransitions& BlockTransitions::over(double dt) {
-  if (std::abs(dt - dt_) < 1e-9) return *this;  // time tags are rounded to a nanosecond
+const BlockTransitions& BlockTransitions::over(double dt, bool renews_gnss_error) {
+  // Time tags are rounded to a nanosecond.
+  if (std::abs(dt - dt_) < 1e-9 && renews_gnss_error == renews_gnss_error_) return *this;
   dt_ = dt;
+  renews_gnss_error_ = renews_gnss_error;
   auto dense = dense_.begin();
   layout_.for_each_block([&](const StateLayout::Block& b) {
     const int row = b.offset - kNav;
@@ -159,6 +161,9 @@ const BlockTransitions& BlockTransitions::over(double dt) {
     else
       b.process->transition(dt, diagonal_.segment<1>(row));
     b.process->driving_noise(dt, Q_d_.block(row, 0, b.size, b.size));
+    if (!renews_gnss_error || !layout_.is_gnss_error(b.offset)) return;
+    diagonal_(row) = 0.0;
+    b.process->initial_covariance(Q_d_.block(row, 0, 1, 1));  // stationary
   });
   return *this;
 }

@@ -141,9 +141,9 @@ void TransitionAccumulator::fold(const Eigen::Matrix3d& gravity_gradient) {
   clear_pending();
 }
 
-void TransitionAccumulator::propagate_covariance(Eigen::MatrixXd& P) {
+void TransitionAccumulator::propagate_covariance(Eigen::MatrixXd& P, bool renews_gnss_error) {
   const auto rest = P.rows() - kNav;
-  over_interval_.over(elapsed_);
+  over_interval_.over(elapsed_, renews_gnss_error);
   NavRows T(kNav, P.cols());
   T.topRows<kPsi>().noalias() = Phi_n_.topRows<kPsi>() * P.topRows(Phi_n_.cols());
   // The attitude depends only on attitude and gyro states.

@@ -50,6 +50,7 @@ struct Filtered {
            std::uint64_t seed, const StartSd& sd)
       : model(error_model(yaml)), options(filter_options) {
     recording = make_recording(recording_options, &model, seed);
+    float_between(recording.gnss, 4, 7);  // a lasting error ends there and another begins
     begin(seed, sd);
   }
   void begin(std::uint64_t seed, const StartSd& sd) {

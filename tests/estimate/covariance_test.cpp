@@ -93,7 +93,7 @@ class Covariance : public testing::Test {
       const bool at_knot = since_knot > knot_interval - 1e-6;
       if (transition.substep_due() || at_knot) transition.fold(navigator.gravity_gradient());
       if (!at_knot) continue;
-      transition.propagate_covariance(P);
+      transition.propagate_covariance(P, false);
       transition.reset();
       since_knot = 0.0;
     }

@@ -92,6 +92,7 @@ void LinearProblem::add_transition(const ForwardFilter& filter, Eigen::Index k) 
   Eigen::MatrixXd Phi = moved(Eigen::MatrixXd::Identity(n, n), knot.interval);
   Phi.topRows(kNav).setZero();
   Phi.topLeftCorner(kNav, knot.Phi_n.cols()) = knot.Phi_n;
+  if (knot.renews_gnss_error) Phi.middleRows<3>(*layout_.gnss_error()).setZero();
   const Eigen::VectorXd target = -correction(knots_.at(static_cast<std::size_t>(k) + 1), n);
   const Eigen::MatrixXd all = Eigen::MatrixXd::Identity(n, n);
   add(k, -Phi(at_knots_, Eigen::all), all(at_knots_, Eigen::all), target(at_knots_), arrived[0].P(at_knots_, at_knots_));

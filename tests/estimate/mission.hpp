@@ -53,6 +53,11 @@ struct RecordingOptions {
 /// @param model  of the sensor errors; null for an error-free IMU
 [[nodiscard]] Recording make_recording(const RecordingOptions& options, const noise::ImuErrorModel* model, std::uint64_t seed);
 
+/// Fixes first to last - 1 have float ambiguities.
+inline void float_between(record::GnssRecording& gnss, std::size_t first, std::size_t last) {
+  for (std::size_t i = first; i < last; ++i) gnss.fixes[i].quality = record::FixQuality::kFloat;
+}
+
 /// A start state with errors drawn from its own covariance.
 [[nodiscard]] estimate::FilterState drawn_start(const estimate::ForwardFilter& filter, const record::NavState& truth,
                                                 const StartSd& sd, std::mt19937_64& random);

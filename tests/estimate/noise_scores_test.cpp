@@ -76,6 +76,15 @@ TEST(NoiseScores, AreTheSlopesOfTheLikelihood) {
   expect_scores_are_slopes(recording.mission(), model, recording);
 }
 
+// A lasting error ends where another set of ambiguities begins.
+TEST(NoiseScores, HoldAcrossNewAmbiguities) {
+  const noise::ImuErrorModel model = test::error_model(test::kIndustrialModel);
+  test::Recording recording = wandering_recording(model, 120.0);
+  test::float_between(recording.gnss, 81, 90);
+  test::float_between(recording.gnss, 150, 151);
+  expect_scores_are_slopes(recording.mission(), model, recording);
+}
+
 // Nothing of what the noise did before it reaches the attitude behind it.
 TEST(NoiseScores, HoldAcrossARestart) {
   const noise::ImuErrorModel model = test::error_model(test::kIndustrialModel);

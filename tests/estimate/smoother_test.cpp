@@ -18,6 +18,8 @@ using namespace estimate;
 
 class SmootherTest : public testing::Test {
  protected:
+  static constexpr std::size_t kFirstFloat = 4, kFixedAgain = 7;
+
   SmootherTest() : model_(test::error_model(test::kIndustrialModel)) {
     simulate::GnssOptions gnss;
     gnss.phase = 0.0137;
@@ -25,6 +27,7 @@ class SmootherTest : public testing::Test {
     gnss.lever_arm_b = {0.5, 0.2, -1.0};
     gnss.velocity_sd = Eigen::Vector3d(0.05, 0.05, 0.08);
     recording_ = test::make_recording({.duration = 9.0, .gnss = gnss}, &model_, 4);
+    test::float_between(recording_.gnss, kFirstFloat, kFixedAgain);
     FilterOptions options;
     options.gate_probability = 0.0;
     options.auxiliary.lever_arm_sd_m = 0.1;
@@ -42,10 +45,18 @@ class SmootherTest : public testing::Test {
   }
 
   [[nodiscard]] Eigen::Index size() const { return filter_->layout().size(); }
+  /// Whether its interval ends at the first of the float fixes, or at the first behind them.
+  [[nodiscard]] bool new_ambiguities_behind(const Knot& knot) const {
+    const auto ends_at = [&](std::size_t fix) {
+      return std::abs(recording_.gnss.fixes[fix].t - (knot.post.nav.t + knot.interval)) < 1e-5;
+    };
+    return ends_at(kFirstFloat) || ends_at(kFixedAgain);
+  }
   [[nodiscard]] Eigen::MatrixXd dense_transition(const Knot& knot) const {
     Eigen::MatrixXd Phi = Eigen::MatrixXd::Identity(size(), size());
     Eigen::MatrixXd D = Eigen::MatrixXd::Identity(size() - kNav, size() - kNav);
     BlockTransitions(filter_->layout()).over(knot.interval).apply(D);
+    if (new_ambiguities_behind(knot)) D.middleRows<3>(*filter_->layout().gnss_error() - kNav).setZero();
     Phi.bottomRightCorner(size() - kNav, size() - kNav) = D;
     Phi.topLeftCorner(kNav, knot.Phi_n.cols()) = knot.Phi_n;
     return Phi;
@@ -74,6 +85,21 @@ class SmootherTest : public testing::Test {
   std::vector<Knot> knots_;
   std::vector<SmoothedKnot> smoothed_;
 };
+
+// At the first float fix and at the first fixed one behind, and nowhere else, the lasting error is as at the start: stationary,
+// independent of everything.
+TEST_F(SmootherTest, NewAmbiguitiesHaveANewLastingError) {
+  const int g = *filter_->layout().gnss_error();
+  int renewed = 0;
+  for (std::size_t k = 0; k + 1 < knots_.size(); ++k) {
+    const Eigen::MatrixXd& P = P_pred_[k + 1];
+    Eigen::MatrixXd rows = P.middleRows<3>(g);
+    rows.middleCols<3>(g).diagonal() -= Eigen::Vector3d(0.02 * 0.02, 0.02 * 0.02, 0.03 * 0.03);
+    EXPECT_EQ(rows.cwiseAbs().maxCoeff() < 1e-18, new_ambiguities_behind(knots_[k])) << k;
+    renewed += new_ambiguities_behind(knots_[k]) ? 1 : 0;
+  }
+  EXPECT_EQ(renewed, 2);
+}
 
 // All knots' errors as one Gaussian vector, conditioned on all measurements at once.
 TEST_F(SmootherTest, EqualsTheDenseConditionalGaussian) {

@@ -29,6 +29,7 @@ struct Knot {
   ins::RawIncrement remainder;  ///< dt = 0: the sample is unused
   // Transition to the next knot; empty at the last one.
   double interval = 0.0;
+  bool renews_gnss_error = false;
   NavRows Phi_n = NavRows(kNav, 0);
 };
 

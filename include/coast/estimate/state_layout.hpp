@@ -16,7 +16,8 @@ inline constexpr int kVel = 3;
 inline constexpr int kPsi = 6;
 inline constexpr int kNav = 9;
 
-/// Time-correlated GNSS position errors: a stationary Gauss-Markov process each in N, E, D at the antenna.
+/// Time-correlated GNSS position errors: a stationary Gauss-Markov process each in N, E, D at the antenna. Where fixes with fixed
+/// ambiguities begin or end it is drawn anew: what lasts are errors of one set of ambiguities.
 struct CorrelatedGnss {
   double horizontal_m = 0.0;  ///< stationary sd per axis, 0: none
   double vertical_m = 0.0;
@@ -89,6 +90,9 @@ class StateLayout {
   [[nodiscard]] std::optional<int> mounting() const { return mounting_; }        ///< pitch, yaw, rad
   [[nodiscard]] std::optional<int> base_offset() const { return base_offset_; }  ///< 3 states, e
   [[nodiscard]] std::optional<int> gnss_error() const { return gnss_error_; }    ///< 3 states, N, E, D
+  [[nodiscard]] bool is_gnss_error(int state) const {
+    return gnss_error_ && state >= *gnss_error_ && state < *gnss_error_ + 3;
+  }
   /// Index of the first state of each aid.
   [[nodiscard]] const std::vector<int>& aids() const { return aids_; }
   /// The carrier slots are the last states, [carrier_slots(), size()).
@@ -137,8 +141,8 @@ class StateLayout {
 class BlockTransitions {
  public:
   explicit BlockTransitions(const StateLayout& layout);
-  /// Sets the interval. @param dt s, >= 0
-  const BlockTransitions& over(double dt);
+  /// Sets the interval. @param dt s, >= 0  @param renews_gnss_error  at its end the GNSS error is independent of that before
+  const BlockTransitions& over(double dt, bool renews_gnss_error = false);
 
   /// M <- D M
   void apply(Eigen::Ref<Eigen::MatrixXd> M) const;
@@ -160,6 +164,7 @@ class BlockTransitions {
   };
   const StateLayout& layout_;
   double dt_ = -1.0;
+  bool renews_gnss_error_ = false;
   Eigen::VectorXd diagonal_;  ///< phi of blocks of one state, 1 elsewhere
   std::vector<Dense> dense_;  ///< Phi of larger blocks
   Eigen::MatrixXd Q_d_;       ///< blocks stacked, as wide as the largest

@@ -107,7 +107,8 @@ class TransitionAccumulator {
   /// P <- Phi P Phi' + Q over what has been folded since reset(), every block of states included. The effect of driving noise
   /// of sensor states on navigation states within the interval has a closed form for a response that grows like a power of time
   /// (Brown & Hwang); intervals must be short compared with the states' correlation times.
-  void propagate_covariance(Eigen::MatrixXd& P);
+  /// @param renews_gnss_error  see BlockTransitions::over
+  void propagate_covariance(Eigen::MatrixXd& P, bool renews_gnss_error);
 
  private:
   void add_sensor_columns();
