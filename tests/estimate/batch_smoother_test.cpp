@@ -72,6 +72,7 @@ TEST(BatchSmoother, EqualsTheDenseConditionalDistribution) {
       const Knot knot = store.at(static_cast<std::size_t>(j));
       Eigen::MatrixXd moved = across;
       BlockTransitions(layout).over(knot.interval).apply(moved.bottomRows(n - kNav));
+      if (knot.renews_gnss_error) moved.middleRows<3>(*layout.gnss_error()).setZero();
       moved.topRows<kNav>() = knot.Phi_n * across.topRows(knot.Phi_n.cols());
       across = moved;
     }
