@@ -17,10 +17,10 @@ enum class Kind { kMap, kList, kScalar, kNull };
 
 struct TreeEntry {
   Kind kind = Kind::kMap;
-  std::string key;   // of the parent map; empty in a list and at the root
-  std::string text;  // of a scalar
+  std::string key;                                  // of the parent map; empty in a list and at the root
+  std::string text;                                 // of a scalar
   std::shared_ptr<const record::Table> table = {};  // of a scalar that stands for a file
-  long line = 0;     // 0: not from a file
+  long line = 0;                                    // 0: not from a file
   std::size_t parent = 0;
   std::vector<std::size_t> children;
 

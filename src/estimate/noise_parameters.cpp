@@ -4,9 +4,9 @@ namespace coast::estimate {
 
 namespace {
 
-template <auto Factors, Eigen::Index axis>
+template <auto Factors, Eigen::Index Axis>
 double& factor(NoiseAdjustment& adjustment) {
-  return (adjustment.*Factors)(axis);
+  return (adjustment.*Factors)(Axis);
 }
 
 }  // namespace

@@ -44,7 +44,8 @@ GnssFileOptions GnssFileOptions::from(const config::Node& gnss) {
 
 record::GnssRecording read_gnss(const GnssFileOptions& options, std::optional<geo::GpsTime> near) {
   // With mapped columns any text is a table, whatever its content.
-  const std::string format = options.table || (options.format == "auto" && !options.position_columns.empty()) ? "csv" : options.format;
+  const std::string format =
+      options.table || (options.format == "auto" && !options.position_columns.empty()) ? "csv" : options.format;
   return format_for(options.file, format, &Format::read_gnss, "a GNSS").read_gnss(options, near);
 }
 

@@ -45,7 +45,8 @@ ImuFileOptions ImuFileOptions::from(const config::Node& imu) {
 
 record::ImuRecording read_imu(const ImuFileOptions& options, std::optional<geo::GpsTime> near) {
   // With mapped columns any text is a table, whatever its content.
-  const std::string format = options.table || (options.format == "auto" && !options.gyro_columns.empty()) ? "csv" : options.format;
+  const std::string format =
+      options.table || (options.format == "auto" && !options.gyro_columns.empty()) ? "csv" : options.format;
   return format_for(options.file, format, &Format::read_imu, "an IMU").read_imu(options, near);
 }
 

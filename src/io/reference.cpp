@@ -39,7 +39,8 @@ ReferenceFileOptions ReferenceFileOptions::of_file(const std::filesystem::path& 
 
 record::Trajectory read_reference(const ReferenceFileOptions& options, std::optional<geo::GpsTime> near) {
   // With mapped columns any text is a table, whatever its content.
-  const std::string format = options.table || (options.format == "auto" && !options.position_columns.empty()) ? "csv" : options.format;
+  const std::string format =
+      options.table || (options.format == "auto" && !options.position_columns.empty()) ? "csv" : options.format;
   return format_for(options.file, format, &Format::read_reference, "a trajectory").read_reference(options, near);
 }
 

@@ -69,8 +69,9 @@ TableReader::TableReader(std::shared_ptr<const record::Table> table)
   if (header_.size() != columns.size()) throw std::invalid_argument("a table with as many names as columns");
   for (std::size_t i = 1; i < columns.size(); ++i)
     if (columns[i].size() != columns[0].size())
-      throw InputError({name_, 0, fmt::format("{} values of {} and {} of {}", columns[i].size(), header_[i], columns[0].size(), header_[0]),
-                        "columns of equal lengths", ""});
+      throw InputError(
+          {name_, 0, fmt::format("{} values of {} and {} of {}", columns[i].size(), header_[i], columns[0].size(), header_[0]),
+           "columns of equal lengths", ""});
   if (columns.empty() || columns[0].empty()) throw InputError({name_, 0, "no row of numbers", "a table", ""});
 }
 

@@ -29,8 +29,7 @@ class Rows {
 
 class Rows3 {
  public:
-  explicit Rows3(std::size_t n)
-      : array_({static_cast<py::ssize_t>(n), py::ssize_t{3}}), data_(array_.mutable_data()) {}
+  explicit Rows3(std::size_t n) : array_({static_cast<py::ssize_t>(n), py::ssize_t{3}}), data_(array_.mutable_data()) {}
   void operator()(std::size_t i, const Eigen::Vector3d& value) {
     for (std::size_t k = 0; k < 3; ++k) data_[3 * i + k] = value[static_cast<Eigen::Index>(k)];
   }

@@ -79,7 +79,7 @@ void Relay::pass_on(const py::object& listener) {
 }
 
 void attend(Relay& relay, const py::object& listener, const std::function<bool(std::chrono::milliseconds)>& done) {
-  constexpr std::chrono::milliseconds kLook{100}, kNow{0};
+  constexpr std::chrono::milliseconds kLook{100};
   const py::gil_scoped_release released;
   while (!done(kLook)) {
     const py::gil_scoped_acquire acquired;

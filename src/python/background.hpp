@@ -41,10 +41,12 @@ auto in_background(const pybind11::object& listener, int threads, Job job) {
   auto result = std::async(std::launch::async, [&job, threads, progress = relay.progress()] {
     std::unique_ptr<tbb::global_control> limit;
     if (threads > 0)
-      limit = std::make_unique<tbb::global_control>(tbb::global_control::max_allowed_parallelism, static_cast<std::size_t>(threads));
+      limit = std::make_unique<tbb::global_control>(tbb::global_control::max_allowed_parallelism,
+                                                    static_cast<std::size_t>(threads));
     return job(progress);
   });
-  attend(relay, listener, [&result](std::chrono::milliseconds time) { return result.wait_for(time) == std::future_status::ready; });
+  attend(relay, listener,
+         [&result](std::chrono::milliseconds time) { return result.wait_for(time) == std::future_status::ready; });
   return result.get();
 }
 

@@ -147,9 +147,8 @@ std::unique_ptr<Outcome> ppk(const py::object& what, const std::string& folder, 
 }
 
 std::unique_ptr<Outcome> outage(const py::object& what, const std::string& folder, const Call& call) {
-  return run(jobs::read_outage(tree_from(what, folder)), call, [&call](const auto& config, const auto& progress) {
-    return jobs::outage(config, progress, call.out);
-  });
+  return run(jobs::read_outage(tree_from(what, folder)), call,
+             [&call](const auto& config, const auto& progress) { return jobs::outage(config, progress, call.out); });
 }
 
 std::unique_ptr<Outcome> simulate(const py::object& what, const std::string& folder, const Call& call,
@@ -164,9 +163,8 @@ std::unique_ptr<Outcome> diagnose(const py::object& what, const std::string& fol
   config.twins = twins;
   config.quick = quick;
   config.simulation = simulation;
-  return run(std::move(config), call, [](const auto& of, const auto& progress) {
-    return jobs::diagnose(of, jobs::load(of.run, progress), progress);
-  });
+  return run(std::move(config), call,
+             [](const auto& of, const auto& progress) { return jobs::diagnose(of, jobs::load(of.run, progress), progress); });
 }
 
 std::unique_ptr<Outcome> compare(const fs::path& first, const fs::path& second, const Call& call,

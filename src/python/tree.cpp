@@ -23,7 +23,8 @@ std::shared_ptr<const record::Table> table_from(const py::handle& object) {
   auto table = std::make_shared<record::Table>();
   table->name = object.attr("name").cast<std::string>();
   for (const py::handle& column : object.attr("columns").cast<py::dict>().attr("items")()) {
-    const auto [name, values] = column.cast<std::pair<std::string, py::array_t<double, py::array::c_style | py::array::forcecast>>>();
+    const auto [name, values] =
+        column.cast<std::pair<std::string, py::array_t<double, py::array::c_style | py::array::forcecast>>>();
     table->header.push_back(name);
     table->columns.emplace_back(values.data(), values.data() + values.size());
   }

@@ -2,6 +2,9 @@
 
 #include <gtest/gtest.h>
 
+#include <limits>
+#include <memory>
+
 #include <cmath>
 
 #include "files.hpp"
@@ -173,6 +176,37 @@ TEST(Table, DamagedGzipIsRefusedNotCutShort) {
   flipped[whole.size() / 2] = static_cast<char>(flipped[whole.size() / 2] ^ 0x55);
   files.put("cut.csv.gz", flipped);
   EXPECT_NE(refusal(read), "");
+}
+
+std::shared_ptr<const record::Table> in_memory(std::vector<std::vector<double>> columns) {
+  return std::make_shared<record::Table>(record::Table{"a frame", {"t", "x"}, std::move(columns)});
+}
+
+// What is requested by name or number, row by row; values that are not finite are for the caller, as in a file.
+TEST(TableInMemory, IsReadLikeAFile) {
+  TableReader table(in_memory({{1.0, 2.0, 3.0}, {0.1, std::numeric_limits<double>::quiet_NaN(), 0.3}}));
+  const std::size_t x = table.number_slot("x", "x");
+  const std::size_t t = table.number_slot(1, "time");
+  EXPECT_EQ(table.expected_rows(), 3U);
+  std::vector<double> sums;
+  std::vector<bool> finite;
+  while (table.next()) {
+    sums.push_back(table.number(t) + table.number(x));
+    finite.push_back(table.finite());
+    EXPECT_EQ(table.line(), static_cast<long>(sums.size()));
+  }
+  EXPECT_EQ(finite, (std::vector<bool>{true, false, true}));
+  EXPECT_EQ(sums[0], 1.1);
+  EXPECT_EQ(sums[2], 3.3);
+  EXPECT_EQ(table.rows(), 3);
+}
+
+TEST(TableInMemory, ThatIsNoneIsRefused) {
+  EXPECT_THROW(TableReader(in_memory({{1.0, 2.0}, {1.0}})), InputError);
+  EXPECT_THROW(TableReader(in_memory({{}, {}})), InputError);
+  TableReader table(in_memory({{1.0}, {1.0}}));
+  EXPECT_THROW(static_cast<void>(table.number_slot("y", "y")), InputError);
+  EXPECT_THROW(static_cast<void>(table.text_slot("x", "date")), InputError);
 }
 
 }  // namespace

@@ -16,8 +16,8 @@ inline constexpr int kVel = 3;
 inline constexpr int kPsi = 6;
 inline constexpr int kNav = 9;
 
-/// Time-correlated GNSS position errors: a stationary Gauss-Markov process each in N, E, D at the antenna. Where fixes with fixed
-/// ambiguities begin or end it is drawn anew: what lasts are errors of one set of ambiguities.
+/// Time-correlated GNSS position errors: a stationary Gauss-Markov process each in N, E, D at the antenna. Where fixes with
+/// fixed ambiguities begin or end it is drawn anew: what lasts are errors of one set of ambiguities.
 struct CorrelatedGnss {
   double horizontal_m = 0.0;  ///< stationary sd per axis, 0: none
   double vertical_m = 0.0;
@@ -90,9 +90,7 @@ class StateLayout {
   [[nodiscard]] std::optional<int> mounting() const { return mounting_; }        ///< pitch, yaw, rad
   [[nodiscard]] std::optional<int> base_offset() const { return base_offset_; }  ///< 3 states, e
   [[nodiscard]] std::optional<int> gnss_error() const { return gnss_error_; }    ///< 3 states, N, E, D
-  [[nodiscard]] bool is_gnss_error(int state) const {
-    return gnss_error_ && state >= *gnss_error_ && state < *gnss_error_ + 3;
-  }
+  [[nodiscard]] bool is_gnss_error(int state) const { return gnss_error_ && state >= *gnss_error_ && state < *gnss_error_ + 3; }
   /// Index of the first state of each aid.
   [[nodiscard]] const std::vector<int>& aids() const { return aids_; }
   /// The carrier slots are the last states, [carrier_slots(), size()).

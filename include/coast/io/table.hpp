@@ -43,7 +43,8 @@ class TableReader {
  public:
   /// Opens the file and reads up to the first row.  @throws InputError no rows, or an error of ByteSource
   explicit TableReader(const std::filesystem::path& path);
-  /// Rows of numbers only; a line in a message is a row, counted from 1.  @throws InputError no rows, columns of different lengths
+  /// Rows of numbers only; a line in a message is a row, counted from 1.  @throws InputError no rows, columns of different
+  /// lengths
   explicit TableReader(std::shared_ptr<const record::Table> table);
 
   [[nodiscard]] const std::vector<std::string>& header() const { return header_; }      ///< empty where there is none
@@ -120,7 +121,8 @@ class TableReader {
 };
 
 /// The table if there is one, else the file.
-[[nodiscard]] inline TableReader table_reader(const std::filesystem::path& file, const std::shared_ptr<const record::Table>& table) {
+[[nodiscard]] inline TableReader table_reader(const std::filesystem::path& file,
+                                              const std::shared_ptr<const record::Table>& table) {
   return table ? TableReader(table) : TableReader(file);
 }
 

@@ -22,9 +22,9 @@ struct FittedParameter {
   const char* subject;  ///< of a clause about the factor; nullptr: no clause
 };
 
-template <auto Factors, Eigen::Index axis>
+template <auto Factors, Eigen::Index Axis>
 double factor(const NoiseAdjustment& adjustment) {
-  return (adjustment.*Factors)(axis);
+  return (adjustment.*Factors)(Axis);
 }
 
 constexpr FittedParameter kParameters[] = {
