@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <pybind11/numpy.h>
 #include <pybind11/stl.h>
+#include <pybind11/stl/filesystem.h>
 
 #include <filesystem>
 #include <memory>
@@ -31,8 +32,9 @@ std::shared_ptr<const record::Table> table_from(const py::handle& object) {
   return table;
 }
 
-/// A Python scalar as the text that YAML would have for it.
+/// A scalar of Python or numpy as the text that YAML would have for it.
 std::string text_of(const py::handle& value) {
+  if (py::hasattr(value, "item")) return text_of(value.attr("item")());
   if (py::isinstance<py::bool_>(value)) return value.cast<bool>() ? "true" : "false";
   if (py::isinstance<py::float_>(value)) return fmt::format("{}", value.cast<double>());
   return py::str(value);

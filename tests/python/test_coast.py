@@ -97,13 +97,15 @@ class Process(Recorded):
         self.assertEqual(result.innovations.used.sum() + result.summary["gnss"]["rejected"], result.innovations.sizes["time"])
         self.assertEqual(len(result.outages), 1)
         self.assertIn("gyro", " ".join(result.states.data_vars))
+        self.assertGreater(result.states.sizes["seconds"], 100)
 
     def test_arrays_in_memory_give_the_same_bits(self):
         stated = self.run_dict()
         recording = self.folder / "recording"
         stated["imu"]["file"] = coast.Table(read_table(recording / stated["imu"]["file"]), "imu")
         stated["gnss"]["file"] = coast.Table(read_positions(recording / stated["gnss"]["file"]), "gnss")
-        stated["gnss"]["gps_week"] = self.scenario["start_gps"]["week"]
+        stated["gnss"]["gps_week"] = np.int64(self.scenario["start_gps"]["week"])
+        stated["gnss"]["use_velocity"] = np.True_
         stated.pop("reference", None)
         from_memory = coast.process(stated, folder=self.folder / "recording")
         plain = self.run_dict()
@@ -174,7 +176,14 @@ class BadInput(Recorded):
 
     def test_refuses_tables_that_are_none(self):
         stated = self.run_dict()
-        for columns, told in (({"time_s": []}, "no row"), ({"time_s": [1.0], "lat_deg": [1.0, 2.0]}, "equal lengths"), ({"t": [1.0]}, "time_s")):
+        with self.assertRaisesRegex(ValueError, "dimensions"):
+            coast.Table({"time_s": [[1.0, 2.0]]})
+        for columns, told in (
+            ({"time_s": np.empty(0)}, "no row"),
+            ({"time_s": [1.0], "lat_deg": [1.0, 2.0]}, "equal lengths"),
+            ({"t": [1.0]}, "time_s"),
+            ({"time_s": ["monday"]}, "no row"),
+        ):
             stated["gnss"]["file"] = coast.Table(columns)
             with self.assertRaisesRegex(coast.InputError, told):
                 coast.process(stated, folder=self.folder / "recording")

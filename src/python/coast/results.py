@@ -121,15 +121,13 @@ class ProcessResult(Result):
     def states(self) -> xarray.Dataset:
         import xarray
 
-        variables = {}
+        variables, seconds = {}, np.empty(0)
         for name, track in self._outcome.states().items():
-            dimension = f"time_{len(track['seconds'])}"
+            seconds = track["seconds"]  # the same knots for all
             for part in ("forward", "forward_sd", "smoothed", "smoothed_sd"):
-                if len(track[part]) == len(track["seconds"]):
-                    variables[f"{name}_{part}"] = (dimension, track[part])
-            variables.setdefault(dimension, (dimension, track["seconds"], {"units": "s", "long_name": "since the start of the mission"}))
-        coords = {name: variables.pop(name) for name in list(variables) if name.startswith("time_")}
-        return xarray.Dataset(variables, coords=coords)
+                if len(track[part]) == len(seconds):
+                    variables[f"{name}_{part}"] = ("seconds", track[part])
+        return xarray.Dataset(variables, coords={"seconds": ("seconds", seconds, {"units": "s", "long_name": "since the start of the mission"})})
 
     @property
     def outages(self) -> list[dict]:
