@@ -10,6 +10,7 @@
 
 #include "coast/array/channel.hpp"
 #include "coast/array/resample.hpp"
+#include "coast/record/own_group.hpp"
 
 namespace coast::array {
 
@@ -45,10 +46,13 @@ LagOfTag lag_of(const std::vector<std::optional<LagCurve>>& lags, std::size_t k,
 Signals on_grid(const std::vector<ArrayMember>& members, const Grid& grid, const std::vector<std::optional<LagCurve>>& lags) {
   Signals signals{grid.start, grid.dt, {}};
   signals.sensors.resize(members.size());
-  tbb::parallel_for(std::size_t{0}, members.size(), [&](std::size_t k) {
-    signals.sensors[k] = resample(*members[k].recording, grid, lag_of(lags, k, grid.start));
-    signals.sensors[k].name = members[k].name;
-  });
+  tbb::parallel_for(
+      std::size_t{0}, members.size(),
+      [&](std::size_t k) {
+        signals.sensors[k] = resample(*members[k].recording, grid, lag_of(lags, k, grid.start));
+        signals.sensors[k].name = members[k].name;
+      },
+      OwnGroup().group());
   return signals;
 }
 
@@ -90,11 +94,14 @@ void leave_out_ends_of_ranges(const std::vector<ArrayMember>& members, geo::GpsT
   const Grid grid{assembly.signals.start, assembly.signals.dt, assembly.signals.samples()};
   assembly.saturation.resize(members.size());
   std::vector<std::vector<std::uint8_t>> wrong(members.size());
-  tbb::parallel_for(std::size_t{0}, members.size(), [&](std::size_t k) {
-    assembly.saturation[k] = find_saturation(*members[k].recording);
-    wrong[k] = mark_saturation(assembly.signals.sensors[k], assembly.saturation[k], *members[k].recording, grid,
-                               lag_of(assembly.lags, k, lags_from));
-  });
+  tbb::parallel_for(
+      std::size_t{0}, members.size(),
+      [&](std::size_t k) {
+        assembly.saturation[k] = find_saturation(*members[k].recording);
+        wrong[k] = mark_saturation(assembly.signals.sensors[k], assembly.saturation[k], *members[k].recording, grid,
+                                   lag_of(assembly.lags, k, lags_from));
+      },
+      OwnGroup().group());
   leave_out_where_others_are_not(assembly.signals, wrong);
   for (std::size_t k = 0; k < members.size(); ++k) {
     const Saturation& own = assembly.saturation[k];
@@ -111,11 +118,14 @@ std::vector<std::optional<LagCurve>> find_lags(Signals signals, const std::vecto
                                                const LagOptions& options, record::Events& events) {
   turn_to_body(signals, frames);
   std::vector<std::optional<LagCurve>> lags(frames.size());
-  tbb::parallel_for(std::size_t{1}, frames.size(), [&](std::size_t k) {
-    lags[k] = lag_curve(signals.sensors.front(), signals.sensors[k], signals.dt, options);
-    // One window cannot determine the drift.
-    if (lags[k] && !std::isfinite(lags[k]->drift_sigma_ppm)) lags[k]->drift_ppm = 0.0;
-  });
+  tbb::parallel_for(
+      std::size_t{1}, frames.size(),
+      [&](std::size_t k) {
+        lags[k] = lag_curve(signals.sensors.front(), signals.sensors[k], signals.dt, options);
+        // One window cannot determine the drift.
+        if (lags[k] && !std::isfinite(lags[k]->drift_sigma_ppm)) lags[k]->drift_ppm = 0.0;
+      },
+      OwnGroup().group());
   for (std::size_t k = 1; k < frames.size(); ++k)
     if (!lags[k])
       say(events, record::Event::Severity::kWarning, "no_lag",

@@ -1,4 +1,5 @@
 #include "coast/array/defects.hpp"
+#include "coast/record/own_group.hpp"
 
 #include <fmt/format.h>
 #include <tbb/parallel_for.h>
@@ -127,9 +128,10 @@ DefectReport find_defects(const Signals& signals, const DefectOptions& options) 
   const SensorSpread spread = sensor_spread(compared, blocks);
 
   std::array<ChannelResult, kChannels> channels;
-  tbb::parallel_for(0, kChannels, [&](int c) {
-    channels.at(static_cast<std::size_t>(c)) = watch_channel(compared, blocks, spread, c, share, options);
-  });
+  tbb::parallel_for(
+      0, kChannels,
+      [&](int c) { channels.at(static_cast<std::size_t>(c)) = watch_channel(compared, blocks, spread, c, share, options); },
+      OwnGroup().group());
 
   DefectReport report;
   report.block_s = blocks.seconds;

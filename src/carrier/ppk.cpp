@@ -7,6 +7,7 @@
 #include <tuple>
 
 #include "coast/record/error.hpp"
+#include "coast/record/own_group.hpp"
 #include "doppler_displacement.hpp"
 #include "pass.hpp"
 #include "phase_velocity.hpp"
@@ -142,7 +143,8 @@ PpkSolution solve_ppk(const record::ObservationRecording& rover, const record::O
     const auto both = [&](const KnownIntegers& known) {
       std::pair<Pass, Pass> passes;
       const std::function<void(double)> told = stages.next();
-      tbb::parallel_invoke([&] { passes.first = pass(false, known, told); }, [&] { passes.second = pass(true, known, {}); });
+      tbb::parallel_invoke([&] { passes.first = pass(false, known, told); }, [&] { passes.second = pass(true, known, {}); },
+                           OwnGroup().group());
       return passes;
     };
     auto [there, back] = both({});

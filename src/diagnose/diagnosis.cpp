@@ -13,6 +13,7 @@
 #include <utility>
 
 #include "coast/record/error.hpp"
+#include "coast/record/own_group.hpp"
 #include "search/begin.hpp"
 #include "search/exchange.hpp"
 #include "search/search.hpp"
@@ -124,8 +125,9 @@ bool keep_first_likelier(const std::vector<Exchange>& exchanges, Searched& best,
     std::deque<Aside> asides;
     for (std::size_t i = 0; i < count; ++i) asides.emplace_back(context);
     std::vector<std::optional<Searched>> outcomes(count);
-    tbb::parallel_for(std::size_t{0}, count,
-                      [&](std::size_t i) { outcomes[i] = after(exchanges[first + i], before, asides[i].context); });
+    tbb::parallel_for(
+        std::size_t{0}, count, [&](std::size_t i) { outcomes[i] = after(exchanges[first + i], before, asides[i].context); },
+        OwnGroup().group());
     for (std::size_t i = 0; i < count; ++i) {
       context.runs.count(asides[i].runs.made());
       if (outcomes[i] && keep_likelier(best, *std::move(outcomes[i]), context)) return true;
@@ -178,7 +180,8 @@ Searched likelier_order(const State& start, Context& context) {
   Aside aside(context);
   start.run->complete();  // both begin with it
   if (tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism) > 1) {
-    tbb::parallel_invoke([&] { search_to_the_end(best, context); }, [&] { other = with_means_first(start, aside.context); });
+    tbb::parallel_invoke([&] { search_to_the_end(best, context); }, [&] { other = with_means_first(start, aside.context); },
+                         OwnGroup().group());
   } else {
     search_to_the_end(best, context);
     if (found_noise(best.state)) other = with_means_first(start, aside.context);

@@ -8,6 +8,7 @@
 
 #include "backward_recursion.hpp"
 #include "coast/geo/earth.hpp"
+#include "coast/record/own_group.hpp"
 #include "propagation.hpp"
 
 namespace coast::estimate {
@@ -286,11 +287,13 @@ void effect_pass(const Mission& mission, const StateLayout& layout, const KnotSt
     }
     if (options.progress) options.progress(1.0 - static_cast<double>(chunk.first) / static_cast<double>(knots.size()));
   };
-  tbb::parallel_pipeline(kTokens, tbb::make_filter<void, std::size_t>(tbb::filter_mode::serial_in_order, next) &
-                                      tbb::make_filter<std::size_t, std::pair<std::size_t, std::vector<PreparedKnot>>>(
-                                          tbb::filter_mode::parallel, prepare) &
-                                      tbb::make_filter<std::pair<std::size_t, std::vector<PreparedKnot>>, void>(
-                                          tbb::filter_mode::serial_in_order, recur));
+  tbb::parallel_pipeline(
+      kTokens,
+      tbb::make_filter<void, std::size_t>(tbb::filter_mode::serial_in_order, next) &
+          tbb::make_filter<std::size_t, std::pair<std::size_t, std::vector<PreparedKnot>>>(tbb::filter_mode::parallel,
+                                                                                           prepare) &
+          tbb::make_filter<std::pair<std::size_t, std::vector<PreparedKnot>>, void>(tbb::filter_mode::serial_in_order, recur),
+      OwnGroup().group());
 }
 
 }  // namespace coast::estimate

@@ -8,6 +8,7 @@
 #include <limits>
 
 #include "coast/record/error.hpp"
+#include "coast/record/own_group.hpp"
 #include "noise_objective.hpp"
 #include "noise_search.hpp"
 
@@ -90,8 +91,10 @@ void describe(const NoiseObjective& objective, const std::vector<NoiseParameter>
   fit.log_likelihood_after = optimum.value - objective.prior().value(optimum.theta);
   fit.log_sd = deviations(optimum.information);
   fit.needed.resize(parameters.size());
-  tbb::parallel_for(std::size_t{0}, parameters.size(),
-                    [&](std::size_t i) { fit.needed[i] = fit.log_likelihood_after - log_likelihood_without(parameters[i]); });
+  tbb::parallel_for(
+      std::size_t{0}, parameters.size(),
+      [&](std::size_t i) { fit.needed[i] = fit.log_likelihood_after - log_likelihood_without(parameters[i]); },
+      OwnGroup().group());
 }
 
 std::vector<Bound> bounds_met(const Eigen::VectorXd& theta, const SearchBox& box) {

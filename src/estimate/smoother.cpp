@@ -8,6 +8,7 @@
 #include "backward_recursion.hpp"
 #include "coast/geo/rotation.hpp"
 #include "coast/record/error.hpp"
+#include "coast/record/own_group.hpp"
 #include "propagation.hpp"
 
 namespace coast::estimate {
@@ -150,9 +151,11 @@ void emit_smoothed(const Mission& mission, const StateLayout& layout, const Knot
     if (progress) progress(static_cast<double>(chunk.first + chunk.knots.size()) / static_cast<double>(intervals));
   };
   using tbb::filter_mode;
-  tbb::parallel_pipeline(kChunksInFlight, tbb::make_filter<void, Chunk>(filter_mode::serial_in_order, read) &
-                                              tbb::make_filter<Chunk, Chunk>(filter_mode::parallel, work) &
-                                              tbb::make_filter<Chunk, void>(filter_mode::serial_in_order, deliver));
+  tbb::parallel_pipeline(kChunksInFlight,
+                         tbb::make_filter<void, Chunk>(filter_mode::serial_in_order, read) &
+                             tbb::make_filter<Chunk, Chunk>(filter_mode::parallel, work) &
+                             tbb::make_filter<Chunk, void>(filter_mode::serial_in_order, deliver),
+                         OwnGroup().group());
 }
 
 }  // namespace coast::estimate

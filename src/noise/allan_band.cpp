@@ -8,6 +8,7 @@
 
 #include "block_draws.hpp"
 #include "calibration_checks.hpp"
+#include "coast/record/own_group.hpp"
 
 namespace coast::noise {
 
@@ -100,12 +101,15 @@ CurveBand band_of(const AllanCurve& curve, const SumModel& model, const std::vec
   const SampleBlock block = model.block(u, signal.interval);
   std::vector<std::vector<double>> logs(count);
   std::atomic<std::size_t> done = 0;
-  tbb::parallel_for(std::size_t{0}, count, [&](std::size_t i) {
-    BlockDraws draws(block, options.seed + 1 + i);
-    if (options.progress)
-      options.progress("realisations of the estimate", static_cast<double>(done++) / static_cast<double>(count));
-    logs[i] = grid.of([&](std::size_t k) { return draws.next() + slope * signal.interval * static_cast<double>(k); });
-  });
+  tbb::parallel_for(
+      std::size_t{0}, count,
+      [&](std::size_t i) {
+        BlockDraws draws(block, options.seed + 1 + i);
+        if (options.progress)
+          options.progress("realisations of the estimate", static_cast<double>(done++) / static_cast<double>(count));
+        logs[i] = grid.of([&](std::size_t k) { return draws.next() + slope * signal.interval * static_cast<double>(k); });
+      },
+      OwnGroup().group());
   std::vector<double> mean(points, 0.0);
   std::vector<double> sd(points, 0.0);
   const auto n = static_cast<double>(count);

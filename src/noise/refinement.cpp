@@ -1,4 +1,5 @@
 #include "refinement.hpp"
+#include "coast/record/own_group.hpp"
 
 #include <tbb/parallel_for.h>
 
@@ -118,7 +119,8 @@ class Refinement {
     return penalty(step.model, independent_squares(spectral_slope(spectrum_, step.model, step.u).information), samples_);
   }
   void rank(std::vector<SpectralStep>& steps) const {
-    tbb::parallel_for(std::size_t{0}, steps.size(), [&](std::size_t i) { steps[i] = ranked(std::move(steps[i])); });
+    tbb::parallel_for(
+        std::size_t{0}, steps.size(), [&](std::size_t i) { steps[i] = ranked(std::move(steps[i])); }, OwnGroup().group());
     std::ranges::sort(steps, {}, &SpectralStep::cost);
   }
   bool follow(std::vector<SpectralStep> steps, SpectralStep& now) {

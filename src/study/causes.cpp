@@ -10,6 +10,7 @@
 
 #include "cause_hypotheses.hpp"
 #include "coast/record/error.hpp"
+#include "coast/record/own_group.hpp"
 
 namespace coast::study {
 
@@ -136,11 +137,15 @@ void run(const Excerpt& excerpt, const Setup& setup, std::vector<Profile>& profi
     profile.fits.resize(profile.noise.size());
     for (std::size_t i = done; i < profile.noise.size(); ++i) missing.emplace_back(&profile, i);
   }
-  tbb::parallel_for(std::size_t{0}, missing.size(), [&](std::size_t k) {
-    auto& [profile, i] = missing[k];
-    const bool aligned = i > 0 && profile->fits.front().start;
-    profile->fits[i] = fit(excerpt, setup, profile->hypothesis, profile->noise[i], aligned ? &profile->fits.front() : nullptr);
-  });
+  tbb::parallel_for(
+      std::size_t{0}, missing.size(),
+      [&](std::size_t k) {
+        auto& [profile, i] = missing[k];
+        const bool aligned = i > 0 && profile->fits.front().start;
+        profile->fits[i] =
+            fit(excerpt, setup, profile->hypothesis, profile->noise[i], aligned ? &profile->fits.front() : nullptr);
+      },
+      OwnGroup().group());
 }
 
 // A fit requested in the run file is not reported as advice.

@@ -10,6 +10,7 @@
 
 #include "coast/ins/mounting.hpp"
 #include "coast/record/error.hpp"
+#include "coast/record/own_group.hpp"
 #include "seed_outage.hpp"
 
 namespace coast::study {
@@ -152,7 +153,8 @@ void Ensemble::run(std::size_t recording, const std::function<void(double)>& pro
 
 StudyResult run_ensemble(const EnsemblePlan& plan, const std::function<void(double)>& progress, const StudyJournal& journal) {
   Ensemble ensemble(plan, journal);
-  tbb::parallel_for(std::size_t{0}, ensemble.recordings(), [&](std::size_t i) { ensemble.run(i, progress); });
+  tbb::parallel_for(
+      std::size_t{0}, ensemble.recordings(), [&](std::size_t i) { ensemble.run(i, progress); }, OwnGroup().group());
   return ensemble.take();
 }
 

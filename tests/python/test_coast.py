@@ -234,7 +234,7 @@ class Beside(Recorded):
 
 class OtherJobs(Recorded):
     def test_diagnose(self):
-        result = coast.diagnose(self.run_yaml, twins=0)
+        result = coast.diagnose(self.run_yaml, quick=True)
         self.assertIn("effects", result.summary)
 
     def test_calibrate_a_table(self):

@@ -1,4 +1,5 @@
 #include "evidence/random_fit.hpp"
+#include "coast/record/own_group.hpp"
 
 #include <tbb/parallel_invoke.h>
 
@@ -40,7 +41,7 @@ Bracket uphill(const GainOfRoot& gain_at, double log_root) {
   constexpr int kMost = 8;
   Bracket b{log_root, 0.0, 0.0, 0.0};
   tbb::parallel_invoke([&] { b.gain = gain_at(log_root); }, [&] { b.low = gain_at(log_root - kLogStep); },
-                       [&] { b.high = gain_at(log_root + kLogStep); });
+                       [&] { b.high = gain_at(log_root + kLogStep); }, OwnGroup().group());
   for (int i = 0; i < kMost && std::max(b.low, b.high) > b.gain; ++i) {
     const bool up = b.high > b.low;
     b.log_root += up ? kLogStep : -kLogStep;

@@ -1,4 +1,5 @@
 #include "search/candidates.hpp"
+#include "coast/record/own_group.hpp"
 
 #include <tbb/parallel_for.h>
 
@@ -106,9 +107,12 @@ void Candidates::run_all() {
   if (pending.empty()) return;
   const std::vector<RunPtr> first = context_->runs.try_all(requests);
   std::vector<std::optional<Movement>> steps(first.size());
-  tbb::parallel_for(std::size_t{0}, first.size(), [&](std::size_t i) {
-    if (first[i]) steps[i] = movement(first[i]->sizes());
-  });
+  tbb::parallel_for(
+      std::size_t{0}, first.size(),
+      [&](std::size_t i) {
+        if (first[i]) steps[i] = movement(first[i]->sizes());
+      },
+      OwnGroup().group());
   std::vector<Runs::Request> next;
   for (std::size_t i = 0; i < first.size(); ++i)
     if (first[i]) next.push_back({moved(first[i]->explanation(), *steps[i]), first[i]});

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "coast/record/error.hpp"
+#include "coast/record/own_group.hpp"
 
 namespace coast::diagnose {
 
@@ -59,9 +60,12 @@ std::optional<std::size_t> what_spoils_outages(const State& state, const Context
   };
   std::vector<Without> all;
   for_each_selection(state.account, [&](std::size_t first, std::size_t count) { all.push_back({first, count}); });
-  tbb::parallel_for_each(all, [&](Without& one) {
-    one.rms = fit_with(state.explanation.without(one.first, one.count).effects, state, context).outage_rms_m;
-  });
+  tbb::parallel_for_each(
+      all,
+      [&](Without& one) {
+        one.rms = fit_with(state.explanation.without(one.first, one.count).effects, state, context).outage_rms_m;
+      },
+      OwnGroup().group());
   return std::ranges::min_element(all, {}, &Without::rms)->first;
 }
 

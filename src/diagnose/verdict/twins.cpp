@@ -10,6 +10,7 @@
 
 #include "coast/diagnose/twin.hpp"
 #include "coast/record/error.hpp"
+#include "coast/record/own_group.hpp"
 #include "coast/simulate/random.hpp"
 #include "evidence/statistics.hpp"
 #include "search/begin.hpp"
@@ -79,16 +80,19 @@ std::vector<std::vector<Statistic>> all_figures(std::size_t count, const std::fu
   std::vector<std::vector<Statistic>> figures(count);
   std::mutex telling;  // one at a time
   std::size_t done = 0;
-  tbb::parallel_for(std::size_t{0}, count, [&](std::size_t i) {
-    try {
-      figures[i] = figures_of(recording(i), seed);
-    } catch (const NumericalError&) {
-      figures[i].clear();
-    }
-    const std::lock_guard lock(telling);
-    ++done;
-    progress(static_cast<double>(done) / static_cast<double>(count));
-  });
+  tbb::parallel_for(
+      std::size_t{0}, count,
+      [&](std::size_t i) {
+        try {
+          figures[i] = figures_of(recording(i), seed);
+        } catch (const NumericalError&) {
+          figures[i].clear();
+        }
+        const std::lock_guard lock(telling);
+        ++done;
+        progress(static_cast<double>(done) / static_cast<double>(count));
+      },
+      OwnGroup().group());
   std::erase_if(figures, [](const std::vector<Statistic>& one) { return one.empty(); });
   return figures;
 }

@@ -1,6 +1,7 @@
 // The sequence of the stages.
 
 #include "coast/jobs/process.hpp"
+#include "coast/record/own_group.hpp"
 
 #include <fmt/format.h>
 #include <tbb/parallel_invoke.h>
@@ -92,7 +93,8 @@ ProcessResult process(const RunConfig& config, Recordings recordings, const Traj
                          constexpr double kPriorSd = 0.5;  // m: large compared with errors of a tape measure
                          if (mission->mission().gnss.fixes.size() > 10)
                            result.lever_arm = study::check_lever_arm(*mission, kPriorSd, {});
-                       });
+                       },
+                       OwnGroup().group());
   passes.backward.reset();
   offer_gnss_noise(work, result);
   study_sweep(work, delivery, passes, result);

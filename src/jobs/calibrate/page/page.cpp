@@ -1,4 +1,5 @@
 #include "calibrate/page/page.hpp"
+#include "coast/record/own_group.hpp"
 
 #include <fmt/format.h>
 #include <tbb/parallel_for.h>
@@ -150,7 +151,8 @@ report::Page calibration_page(const CalibrationConfig& config, const Calibration
   for (const Sensor sensor : {Sensor::kGyro, Sensor::kAccel}) add_tiles(result, sensor, page);
   page.sections.push_back(records_section(config, result));
   std::vector<report::Section> axes(result.axes.size());
-  tbb::parallel_for(std::size_t{0}, axes.size(), [&](std::size_t i) { axes[i] = axis_section(config, result.axes[i]); });
+  tbb::parallel_for(
+      std::size_t{0}, axes.size(), [&](std::size_t i) { axes[i] = axis_section(config, result.axes[i]); }, OwnGroup().group());
   for (const Sensor sensor : {Sensor::kGyro, Sensor::kAccel}) {
     if (result.of(sensor).empty()) continue;
     page.sections.push_back(sensor_section(result, sensor));
