@@ -1,7 +1,6 @@
 #include "coast/array/assembly.hpp"
 
 #include <fmt/format.h>
-#include <tbb/parallel_for.h>
 
 #include <algorithm>
 #include <cmath>
@@ -10,7 +9,7 @@
 
 #include "coast/array/channel.hpp"
 #include "coast/array/resample.hpp"
-#include "coast/record/own_group.hpp"
+#include "coast/parallel.hpp"
 
 namespace coast::array {
 
@@ -46,13 +45,10 @@ LagOfTag lag_of(const std::vector<std::optional<LagCurve>>& lags, std::size_t k,
 Signals on_grid(const std::vector<ArrayMember>& members, const Grid& grid, const std::vector<std::optional<LagCurve>>& lags) {
   Signals signals{grid.start, grid.dt, {}};
   signals.sensors.resize(members.size());
-  tbb::parallel_for(
-      std::size_t{0}, members.size(),
-      [&](std::size_t k) {
-        signals.sensors[k] = resample(*members[k].recording, grid, lag_of(lags, k, grid.start));
-        signals.sensors[k].name = members[k].name;
-      },
-      OwnGroup().group());
+  coast::parallel_for(std::size_t{0}, members.size(), [&](std::size_t k) {
+    signals.sensors[k] = resample(*members[k].recording, grid, lag_of(lags, k, grid.start));
+    signals.sensors[k].name = members[k].name;
+  });
   return signals;
 }
 
@@ -94,14 +90,11 @@ void leave_out_ends_of_ranges(const std::vector<ArrayMember>& members, geo::GpsT
   const Grid grid{assembly.signals.start, assembly.signals.dt, assembly.signals.samples()};
   assembly.saturation.resize(members.size());
   std::vector<std::vector<std::uint8_t>> wrong(members.size());
-  tbb::parallel_for(
-      std::size_t{0}, members.size(),
-      [&](std::size_t k) {
-        assembly.saturation[k] = find_saturation(*members[k].recording);
-        wrong[k] = mark_saturation(assembly.signals.sensors[k], assembly.saturation[k], *members[k].recording, grid,
-                                   lag_of(assembly.lags, k, lags_from));
-      },
-      OwnGroup().group());
+  coast::parallel_for(std::size_t{0}, members.size(), [&](std::size_t k) {
+    assembly.saturation[k] = find_saturation(*members[k].recording);
+    wrong[k] = mark_saturation(assembly.signals.sensors[k], assembly.saturation[k], *members[k].recording, grid,
+                               lag_of(assembly.lags, k, lags_from));
+  });
   leave_out_where_others_are_not(assembly.signals, wrong);
   for (std::size_t k = 0; k < members.size(); ++k) {
     const Saturation& own = assembly.saturation[k];
@@ -118,14 +111,11 @@ std::vector<std::optional<LagCurve>> find_lags(Signals signals, const std::vecto
                                                const LagOptions& options, record::Events& events) {
   turn_to_body(signals, frames);
   std::vector<std::optional<LagCurve>> lags(frames.size());
-  tbb::parallel_for(
-      std::size_t{1}, frames.size(),
-      [&](std::size_t k) {
-        lags[k] = lag_curve(signals.sensors.front(), signals.sensors[k], signals.dt, options);
-        // One window cannot determine the drift.
-        if (lags[k] && !std::isfinite(lags[k]->drift_sigma_ppm)) lags[k]->drift_ppm = 0.0;
-      },
-      OwnGroup().group());
+  coast::parallel_for(std::size_t{1}, frames.size(), [&](std::size_t k) {
+    lags[k] = lag_curve(signals.sensors.front(), signals.sensors[k], signals.dt, options);
+    // One window cannot determine the drift.
+    if (lags[k] && !std::isfinite(lags[k]->drift_sigma_ppm)) lags[k]->drift_ppm = 0.0;
+  });
   for (std::size_t k = 1; k < frames.size(); ++k)
     if (!lags[k])
       say(events, record::Event::Severity::kWarning, "no_lag",

@@ -1,12 +1,11 @@
 #include "coast/array/defect_study.hpp"
-#include "coast/record/own_group.hpp"
-
-#include <tbb/parallel_for.h>
 
 #include <algorithm>
 #include <atomic>
 #include <cmath>
 #include <random>
+
+#include "coast/parallel.hpp"
 
 namespace coast::array {
 
@@ -106,19 +105,16 @@ DefectStudyRow summary_of(DefectKind kind, double strength, const std::vector<In
 std::vector<DefectStudyRow> rows_of(const DefectStudyOptions& options, const StudiedKind& kind, std::size_t injections,
                                     std::uint64_t first_seed, const std::function<void()>& done) {
   std::vector<InjectionResult> results(injections);
-  tbb::parallel_for(
-      std::size_t{0}, injections,
-      [&](std::size_t i) {
-        // Kinds use the same records, but each injection has its own place.
-        std::mt19937_64 random((first_seed + i) * 16 + static_cast<std::uint64_t>(kind.kind));
-        Signals signals = simulate_array(options.simulation, first_seed + i);
-        const Injection injection =
-            draw_injection(options, kind, kind.strengths[i % kind.strengths.size()], signals.samples(), random);
-        inject(signals, injection, first_seed + i);
-        results[i] = judge(find_defects(signals, options.detection), injection, signals.dt);
-        done();
-      },
-      OwnGroup().group());
+  coast::parallel_for(std::size_t{0}, injections, [&](std::size_t i) {
+    // Kinds use the same records, but each injection has its own place.
+    std::mt19937_64 random((first_seed + i) * 16 + static_cast<std::uint64_t>(kind.kind));
+    Signals signals = simulate_array(options.simulation, first_seed + i);
+    const Injection injection =
+        draw_injection(options, kind, kind.strengths[i % kind.strengths.size()], signals.samples(), random);
+    inject(signals, injection, first_seed + i);
+    results[i] = judge(find_defects(signals, options.detection), injection, signals.dt);
+    done();
+  });
   std::vector<DefectStudyRow> rows;
   for (std::size_t s = 0; s < kind.strengths.size(); ++s) {
     std::vector<InjectionResult> of_strength;
@@ -152,14 +148,11 @@ DefectStudyResult run_defect_study(const DefectStudyOptions& options, std::size_
   ArraySimulation clean = options.simulation;
   clean.duration_s = options.clean_piece_s;
   std::atomic<std::size_t> alarms = 0;
-  tbb::parallel_for(
-      std::size_t{0}, pieces,
-      [&](std::size_t i) {
-        alarms += find_defects(simulate_array(clean, first_seed + 1000000 + i), options.detection).defects.size();
-        ++cleaned;
-        report();
-      },
-      OwnGroup().group());
+  coast::parallel_for(std::size_t{0}, pieces, [&](std::size_t i) {
+    alarms += find_defects(simulate_array(clean, first_seed + 1000000 + i), options.detection).defects.size();
+    ++cleaned;
+    report();
+  });
   result.clean_hours = static_cast<double>(pieces) * options.clean_piece_s / 3600.0;
   result.false_alarms = alarms;
   result.stated_false_alarms = options.detection.false_alarms_per_hour * result.clean_hours;

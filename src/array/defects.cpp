@@ -1,14 +1,13 @@
 #include "coast/array/defects.hpp"
-#include "coast/record/own_group.hpp"
 
 #include <fmt/format.h>
-#include <tbb/parallel_for.h>
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <stdexcept>
 
+#include "coast/parallel.hpp"
 #include "defect_biases.hpp"
 #include "defect_kind.hpp"
 #include "defect_watch.hpp"
@@ -128,10 +127,9 @@ DefectReport find_defects(const Signals& signals, const DefectOptions& options) 
   const SensorSpread spread = sensor_spread(compared, blocks);
 
   std::array<ChannelResult, kChannels> channels;
-  tbb::parallel_for(
-      0, kChannels,
-      [&](int c) { channels.at(static_cast<std::size_t>(c)) = watch_channel(compared, blocks, spread, c, share, options); },
-      OwnGroup().group());
+  coast::parallel_for(0, kChannels, [&](int c) {
+    channels.at(static_cast<std::size_t>(c)) = watch_channel(compared, blocks, spread, c, share, options);
+  });
 
   DefectReport report;
   report.block_s = blocks.seconds;

@@ -1,7 +1,6 @@
 #include "coast/array/merge_study.hpp"
 
 #include <fmt/format.h>
-#include <tbb/parallel_for.h>
 
 #include <cmath>
 #include <mutex>
@@ -11,7 +10,7 @@
 #include <stdexcept>
 
 #include "coast/noise/arma_garch_filter.hpp"
-#include "coast/record/own_group.hpp"
+#include "coast/parallel.hpp"
 
 namespace coast::array {
 
@@ -188,16 +187,13 @@ MergeStudy run_merge_study(const MergeStudyOptions& options, const std::function
   std::vector<StudiedRun> runs(options.runs);
   std::mutex mutex;
   double done = 0.0;
-  tbb::parallel_for(
-      std::size_t{0}, options.runs,
-      [&](std::size_t r) {
-        runs[r] = study_run(options, options.first_seed + r);
-        if (r > 0) runs[r].errors.clear();
-        const std::scoped_lock lock(mutex);
-        done += 1.0 / static_cast<double>(options.runs);
-        if (progress) progress(done);
-      },
-      OwnGroup().group());
+  coast::parallel_for(std::size_t{0}, options.runs, [&](std::size_t r) {
+    runs[r] = study_run(options, options.first_seed + r);
+    if (r > 0) runs[r].errors.clear();
+    const std::scoped_lock lock(mutex);
+    done += 1.0 / static_cast<double>(options.runs);
+    if (progress) progress(done);
+  });
   MergeStudy study;
   for (const std::string& name : merge_names(options.sensors.size())) study.merges.push_back({name, {}});
   study.residual_models.resize(options.sensors.size());

@@ -1,13 +1,12 @@
 #include "coast/carrier/ppk.hpp"
 
 #include <fmt/format.h>
-#include <tbb/parallel_invoke.h>
 
 #include <algorithm>
 #include <tuple>
 
+#include "coast/parallel.hpp"
 #include "coast/record/error.hpp"
-#include "coast/record/own_group.hpp"
 #include "doppler_displacement.hpp"
 #include "pass.hpp"
 #include "phase_velocity.hpp"
@@ -143,8 +142,7 @@ PpkSolution solve_ppk(const record::ObservationRecording& rover, const record::O
     const auto both = [&](const KnownIntegers& known) {
       std::pair<Pass, Pass> passes;
       const std::function<void(double)> told = stages.next();
-      tbb::parallel_invoke([&] { passes.first = pass(false, known, told); }, [&] { passes.second = pass(true, known, {}); },
-                           OwnGroup().group());
+      coast::parallel_invoke([&] { passes.first = pass(false, known, told); }, [&] { passes.second = pass(true, known, {}); });
       return passes;
     };
     auto [there, back] = both({});

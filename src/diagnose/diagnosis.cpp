@@ -2,8 +2,6 @@
 
 #include <fmt/format.h>
 #include <tbb/global_control.h>
-#include <tbb/parallel_for.h>
-#include <tbb/parallel_invoke.h>
 
 #include <algorithm>
 #include <deque>
@@ -12,8 +10,8 @@
 #include <mutex>
 #include <utility>
 
+#include "coast/parallel.hpp"
 #include "coast/record/error.hpp"
-#include "coast/record/own_group.hpp"
 #include "search/begin.hpp"
 #include "search/exchange.hpp"
 #include "search/search.hpp"
@@ -125,9 +123,8 @@ bool keep_first_likelier(const std::vector<Exchange>& exchanges, Searched& best,
     std::deque<Aside> asides;
     for (std::size_t i = 0; i < count; ++i) asides.emplace_back(context);
     std::vector<std::optional<Searched>> outcomes(count);
-    tbb::parallel_for(
-        std::size_t{0}, count, [&](std::size_t i) { outcomes[i] = after(exchanges[first + i], before, asides[i].context); },
-        OwnGroup().group());
+    coast::parallel_for(std::size_t{0}, count,
+                        [&](std::size_t i) { outcomes[i] = after(exchanges[first + i], before, asides[i].context); });
     for (std::size_t i = 0; i < count; ++i) {
       context.runs.count(asides[i].runs.made());
       if (outcomes[i] && keep_likelier(best, *std::move(outcomes[i]), context)) return true;
@@ -180,8 +177,7 @@ Searched likelier_order(const State& start, Context& context) {
   Aside aside(context);
   start.run->complete();  // both begin with it
   if (tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism) > 1) {
-    tbb::parallel_invoke([&] { search_to_the_end(best, context); }, [&] { other = with_means_first(start, aside.context); },
-                         OwnGroup().group());
+    coast::parallel_invoke([&] { search_to_the_end(best, context); }, [&] { other = with_means_first(start, aside.context); });
   } else {
     search_to_the_end(best, context);
     if (found_noise(best.state)) other = with_means_first(start, aside.context);

@@ -1,14 +1,12 @@
 #include "coast/estimate/effect_pass.hpp"
 
-#include <tbb/parallel_pipeline.h>
-
 #include <Eigen/Cholesky>
 #include <algorithm>
 #include <utility>
 
 #include "backward_recursion.hpp"
 #include "coast/geo/earth.hpp"
-#include "coast/record/own_group.hpp"
+#include "coast/parallel.hpp"
 #include "propagation.hpp"
 
 namespace coast::estimate {
@@ -287,13 +285,11 @@ void effect_pass(const Mission& mission, const StateLayout& layout, const KnotSt
     }
     if (options.progress) options.progress(1.0 - static_cast<double>(chunk.first) / static_cast<double>(knots.size()));
   };
-  tbb::parallel_pipeline(
-      kTokens,
-      tbb::make_filter<void, std::size_t>(tbb::filter_mode::serial_in_order, next) &
-          tbb::make_filter<std::size_t, std::pair<std::size_t, std::vector<PreparedKnot>>>(tbb::filter_mode::parallel,
-                                                                                           prepare) &
-          tbb::make_filter<std::pair<std::size_t, std::vector<PreparedKnot>>, void>(tbb::filter_mode::serial_in_order, recur),
-      OwnGroup().group());
+  coast::parallel_pipeline(kTokens, tbb::make_filter<void, std::size_t>(tbb::filter_mode::serial_in_order, next) &
+                                        tbb::make_filter<std::size_t, std::pair<std::size_t, std::vector<PreparedKnot>>>(
+                                            tbb::filter_mode::parallel, prepare) &
+                                        tbb::make_filter<std::pair<std::size_t, std::vector<PreparedKnot>>, void>(
+                                            tbb::filter_mode::serial_in_order, recur));
 }
 
 }  // namespace coast::estimate

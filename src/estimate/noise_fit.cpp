@@ -1,14 +1,12 @@
 #include "coast/estimate/noise_fit.hpp"
 
-#include <tbb/parallel_for.h>
-
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
+#include "coast/parallel.hpp"
 #include "coast/record/error.hpp"
-#include "coast/record/own_group.hpp"
 #include "noise_objective.hpp"
 #include "noise_search.hpp"
 
@@ -91,10 +89,8 @@ void describe(const NoiseObjective& objective, const std::vector<NoiseParameter>
   fit.log_likelihood_after = optimum.value - objective.prior().value(optimum.theta);
   fit.log_sd = deviations(optimum.information);
   fit.needed.resize(parameters.size());
-  tbb::parallel_for(
-      std::size_t{0}, parameters.size(),
-      [&](std::size_t i) { fit.needed[i] = fit.log_likelihood_after - log_likelihood_without(parameters[i]); },
-      OwnGroup().group());
+  coast::parallel_for(std::size_t{0}, parameters.size(),
+                      [&](std::size_t i) { fit.needed[i] = fit.log_likelihood_after - log_likelihood_without(parameters[i]); });
 }
 
 std::vector<Bound> bounds_met(const Eigen::VectorXd& theta, const SearchBox& box) {

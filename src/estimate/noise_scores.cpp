@@ -64,15 +64,16 @@ struct Disturbances {
   Eigen::Vector3d behind, behind_t;  ///< the same of all later knots, times exp(-t/tau); times t/tau exp(-t/tau)
 };
 
-/// How much of the correlated GNSS error is left behind an interval, and the same by the logarithm of its time.
+/// The correlated GNSS error over an interval: dphi is phi steps by the logarithm of the correlation time.
 struct Decay {
-  double phi, slope;
+  double phi, steps;
+  double driven;  ///< 1 - phi^2
 };
 
 Decay decay_of(const Knot& knot, const CorrelatedGnss& gnss) {
-  if (knot.renews_gnss_error) return {0.0, 0.0};
+  if (knot.renews_gnss_error) return {0.0, 0.0, 1.0};
   const double steps = knot.interval / gnss.time_s;
-  return {std::exp(-steps), steps * std::exp(-steps)};
+  return {std::exp(-steps), steps, -std::expm1(-2.0 * steps)};
 }
 
 class BackwardScores {
@@ -140,28 +141,26 @@ class BackwardScores {
   // q = s^2 (1 - phi^2)
   void add_driving_noise_of_gnss(const Knot& knot) {
     const CorrelatedGnss& gnss = model_.adjustment.correlated_gnss;
-    const auto [phi, slope] = decay_of(knot, gnss);
-    const double driven = knot.renews_gnss_error ? 1.0 : -std::expm1(-2.0 * knot.interval / gnss.time_s);
+    const auto [phi, steps, driven] = decay_of(knot, gnss);
     for (int axis = 0; axis < 3; ++axis) {
       const Index g = *model_.layout.gnss_error() + axis;
       const double s = axis < 2 ? gnss.horizontal_m : gnss.vertical_m;
       const double half = 0.5 * (recursion_.r()(g) * recursion_.r()(g) - recursion_.N()(g, g)) * s * s;
       add(axis < 2 ? NoisePart::kCorrelatedHorizontal : NoisePart::kCorrelatedVertical, 2.0 * driven * half);
-      add(NoisePart::kCorrelatedTime, -2.0 * phi * slope * half);
+      add(NoisePart::kCorrelatedTime, -2.0 * steps * phi * phi * half);
     }
   }
   // dphi = phi dt/tau; r and N are now those before the interval, Phi' r and Phi' N Phi.
   void add_decay_of_gnss(const RecordedKnot& knot) {
-    const auto [phi, slope] = decay_of(knot.knot, model_.adjustment.correlated_gnss);
-    const double steps = phi > 0.0 ? slope / phi : 0.0;
+    const Decay decay = decay_of(knot.knot, model_.adjustment.correlated_gnss);
     const Eigen::VectorXd& r = recursion_.r();
     for (int axis = 0; axis < 3; ++axis) {
       const Index g = *model_.layout.gnss_error() + axis;
       const double along = r(g) * knot.P_gnss.row(axis).dot(r) - knot.P_gnss.row(axis).dot(recursion_.N().col(g));
-      add(NoisePart::kCorrelatedTime, steps * (along - r(g) * knot.knot.post.x(g)));
+      add(NoisePart::kCorrelatedTime, decay.steps * (along - r(g) * knot.knot.post.x(g)));
     }
-    behind_t_ = phi * behind_t_ + slope * behind_;
-    behind_ *= phi;
+    behind_t_ = decay.phi * (behind_t_ + decay.steps * behind_);
+    behind_ *= decay.phi;
   }
 
   const NoiseModel& model_;
@@ -205,9 +204,9 @@ class InformationPass {
     d_.topRows<kNav>() = nav_;
     for (std::size_t i = 0; i < kWhiteNoise.size(); ++i)
       if (const Index column = place_(kWhiteNoise[i]); column >= 0) d_.col(column).head<kNav>() += 2.0 * at.white[i];
-    const auto [phi, slope] = decay_of(knot.knot, model_.adjustment.correlated_gnss);
-    before_t_ = phi * before_t_ + slope * before_;
-    before_ *= phi;
+    const Decay decay = decay_of(knot.knot, model_.adjustment.correlated_gnss);
+    before_t_ = decay.phi * (before_t_ + decay.steps * before_);
+    before_ *= decay.phi;
   }
 
   [[nodiscard]] const Eigen::MatrixXd& information() const { return information_; }

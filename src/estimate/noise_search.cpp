@@ -1,12 +1,11 @@
 #include "noise_search.hpp"
-#include "coast/record/own_group.hpp"
-
-#include <tbb/parallel_for.h>
 
 #include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
 #include <deque>
+
+#include "coast/parallel.hpp"
 
 namespace coast::estimate {
 
@@ -142,15 +141,12 @@ Eigen::VectorXd slopes_with_curvature(const Likelihood& likelihood, SearchPoint&
   const Eigen::VectorXd steps = kShare * sigmas_of_each(at.information);
   Eigen::MatrixXd information(n, n);
   Eigen::VectorXd slopes(n);
-  tbb::parallel_for(
-      Index{0}, n,
-      [&](Index i) {
-        double value = 0.0;
-        const NoiseScores there = likelihood.scores_beside(at.theta + steps(i) * Eigen::VectorXd::Unit(n, i), value);
-        slopes(i) = (value - at.value) / steps(i);
-        information.col(i) = (at.scores.gradient - there.gradient) / steps(i);
-      },
-      OwnGroup().group());
+  coast::parallel_for(Index{0}, n, [&](Index i) {
+    double value = 0.0;
+    const NoiseScores there = likelihood.scores_beside(at.theta + steps(i) * Eigen::VectorXd::Unit(n, i), value);
+    slopes(i) = (value - at.value) / steps(i);
+    information.col(i) = (at.scores.gradient - there.gradient) / steps(i);
+  });
   slopes += 0.5 * steps.cwiseProduct(information.diagonal());
   information = (0.5 * (information + information.transpose())).eval();
   if (information.llt().info() == Eigen::Success) at.information = information;  // else the average one, which is no saddle
@@ -163,13 +159,10 @@ Eigen::VectorXd slopes_by_values(const Likelihood& likelihood, const SearchPoint
   const Index n = at.theta.size();
   const Eigen::VectorXd steps = kShare * sigmas_of_each(at.information);
   Eigen::VectorXd slopes(n);
-  tbb::parallel_for(
-      Index{0}, n,
-      [&](Index i) {
-        const Eigen::VectorXd step = steps(i) * Eigen::VectorXd::Unit(n, i);
-        slopes(i) = (likelihood.value_beside(at.theta + step) - likelihood.value_beside(at.theta - step)) / (2.0 * steps(i));
-      },
-      OwnGroup().group());
+  coast::parallel_for(Index{0}, n, [&](Index i) {
+    const Eigen::VectorXd step = steps(i) * Eigen::VectorXd::Unit(n, i);
+    slopes(i) = (likelihood.value_beside(at.theta + step) - likelihood.value_beside(at.theta - step)) / (2.0 * steps(i));
+  });
   return slopes;
 }
 

@@ -1,14 +1,12 @@
 #include "coast/estimate/smoother.hpp"
 
-#include <tbb/parallel_pipeline.h>
-
 #include <algorithm>
 #include <cmath>
 
 #include "backward_recursion.hpp"
 #include "coast/geo/rotation.hpp"
+#include "coast/parallel.hpp"
 #include "coast/record/error.hpp"
-#include "coast/record/own_group.hpp"
 #include "propagation.hpp"
 
 namespace coast::estimate {
@@ -151,11 +149,9 @@ void emit_smoothed(const Mission& mission, const StateLayout& layout, const Knot
     if (progress) progress(static_cast<double>(chunk.first + chunk.knots.size()) / static_cast<double>(intervals));
   };
   using tbb::filter_mode;
-  tbb::parallel_pipeline(kChunksInFlight,
-                         tbb::make_filter<void, Chunk>(filter_mode::serial_in_order, read) &
-                             tbb::make_filter<Chunk, Chunk>(filter_mode::parallel, work) &
-                             tbb::make_filter<Chunk, void>(filter_mode::serial_in_order, deliver),
-                         OwnGroup().group());
+  coast::parallel_pipeline(kChunksInFlight, tbb::make_filter<void, Chunk>(filter_mode::serial_in_order, read) &
+                                                tbb::make_filter<Chunk, Chunk>(filter_mode::parallel, work) &
+                                                tbb::make_filter<Chunk, void>(filter_mode::serial_in_order, deliver));
 }
 
 }  // namespace coast::estimate

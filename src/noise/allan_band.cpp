@@ -1,14 +1,12 @@
 // The band of the Allan curves of realisations of an estimate.
 
-#include <tbb/parallel_for.h>
-
 #include <algorithm>
 #include <atomic>
 #include <cmath>
 
 #include "block_draws.hpp"
 #include "calibration_checks.hpp"
-#include "coast/record/own_group.hpp"
+#include "coast/parallel.hpp"
 
 namespace coast::noise {
 
@@ -101,15 +99,12 @@ CurveBand band_of(const AllanCurve& curve, const SumModel& model, const std::vec
   const SampleBlock block = model.block(u, signal.interval);
   std::vector<std::vector<double>> logs(count);
   std::atomic<std::size_t> done = 0;
-  tbb::parallel_for(
-      std::size_t{0}, count,
-      [&](std::size_t i) {
-        BlockDraws draws(block, options.seed + 1 + i);
-        if (options.progress)
-          options.progress("realisations of the estimate", static_cast<double>(done++) / static_cast<double>(count));
-        logs[i] = grid.of([&](std::size_t k) { return draws.next() + slope * signal.interval * static_cast<double>(k); });
-      },
-      OwnGroup().group());
+  coast::parallel_for(std::size_t{0}, count, [&](std::size_t i) {
+    BlockDraws draws(block, options.seed + 1 + i);
+    if (options.progress)
+      options.progress("realisations of the estimate", static_cast<double>(done++) / static_cast<double>(count));
+    logs[i] = grid.of([&](std::size_t k) { return draws.next() + slope * signal.interval * static_cast<double>(k); });
+  });
   std::vector<double> mean(points, 0.0);
   std::vector<double> sd(points, 0.0);
   const auto n = static_cast<double>(count);

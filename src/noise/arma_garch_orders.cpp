@@ -1,4 +1,3 @@
-#include <tbb/parallel_for.h>
 
 #include <algorithm>
 #include <array>
@@ -6,7 +5,7 @@
 #include <utility>
 
 #include "coast/noise/arma_garch.hpp"
-#include "coast/record/own_group.hpp"
+#include "coast/parallel.hpp"
 
 namespace coast::noise {
 
@@ -24,9 +23,8 @@ ArmaGarchChoice choose_arma_garch(const ArmaGarchSeries& series, const std::vect
   if (orders.empty()) throw std::invalid_argument("choose_arma_garch: no orders");
   ArmaGarchChoice choice;
   choice.fits.resize(orders.size());
-  tbb::parallel_for(
-      std::size_t{0}, orders.size(), [&](std::size_t i) { choice.fits[i] = fit_arma_garch(series, orders[i], options); },
-      OwnGroup().group());
+  coast::parallel_for(std::size_t{0}, orders.size(),
+                      [&](std::size_t i) { choice.fits[i] = fit_arma_garch(series, orders[i], options); });
   const auto least = [&](auto criterion) {
     return static_cast<std::size_t>(std::ranges::min_element(choice.fits, {}, criterion) - choice.fits.begin());
   };

@@ -1,13 +1,12 @@
 #include "coast/noise/arma_garch_study.hpp"
-#include "coast/record/own_group.hpp"
-
-#include <tbb/parallel_for.h>
 
 #include <algorithm>
 #include <atomic>
 #include <chrono>
 #include <cmath>
 #include <stdexcept>
+
+#include "coast/parallel.hpp"
 
 namespace coast::noise {
 
@@ -75,13 +74,10 @@ ArmaGarchStudy run_arma_garch_study(const ArmaGarch& model, std::size_t n, std::
   if (runs == 0) throw std::invalid_argument("run_arma_garch_study: no runs");
   std::vector<ArmaGarchRun> all(runs);
   std::atomic<std::size_t> done = 0;
-  tbb::parallel_for(
-      std::size_t{0}, runs,
-      [&](std::size_t r) {
-        all[r] = study_run(model, n, first_seed + r, constant);
-        if (progress) progress(static_cast<double>(++done) / static_cast<double>(runs));
-      },
-      OwnGroup().group());
+  coast::parallel_for(std::size_t{0}, runs, [&](std::size_t r) {
+    all[r] = study_run(model, n, first_seed + r, constant);
+    if (progress) progress(static_cast<double>(++done) / static_cast<double>(runs));
+  });
   ArmaGarchStudy study;
   study.runs = runs;
   const std::vector<std::string> names = arma_garch_names(model.orders(), constant);

@@ -1,7 +1,6 @@
 #include "coast/noise/calibration.hpp"
 
 #include <fmt/format.h>
-#include <tbb/parallel_for.h>
 
 #include <algorithm>
 #include <chrono>
@@ -11,8 +10,8 @@
 #include "candidate.hpp"
 #include "coast/geo/units.hpp"
 #include "coast/noise/chi_square.hpp"
+#include "coast/parallel.hpp"
 #include "coast/record/error.hpp"
-#include "coast/record/own_group.hpp"
 #include "contradiction.hpp"
 #include "model_search.hpp"
 #include "resolution.hpp"
@@ -102,22 +101,19 @@ void bootstrap_intervals(const Likelihood& likelihood, const Fit& fit, const Cal
   const SumModel& model = likelihood.model();
   const auto count = static_cast<std::size_t>(options.bootstrap);
   std::vector<std::vector<double>> refits(count);
-  tbb::parallel_for(
-      std::size_t{0}, count,
-      [&](std::size_t i) {
-        std::vector<StaticSignal> drawn;
-        for (std::size_t r = 0; r < likelihood.records().size(); ++r) {
-          StaticSignal signal = likelihood.records()[r].signal;  // the same holes
-          const StaticSignal whole =
-              realisation(model, fit.u, signal.interval, signal.length(), options.seed + 1000003ULL * (i + 1) + r);
-          for (const StaticSignal::Run& run : signal.runs)
-            std::copy_n(whole.values.begin() + static_cast<std::ptrdiff_t>(run.start), run.count,
-                        signal.values.begin() + static_cast<std::ptrdiff_t>(run.first));
-          drawn.push_back(std::move(signal));
-        }
-        refits[i] = fit_maximum_likelihood(Likelihood(drawn, model), fit.u).u;
-      },
-      OwnGroup().group());
+  coast::parallel_for(std::size_t{0}, count, [&](std::size_t i) {
+    std::vector<StaticSignal> drawn;
+    for (std::size_t r = 0; r < likelihood.records().size(); ++r) {
+      StaticSignal signal = likelihood.records()[r].signal;  // the same holes
+      const StaticSignal whole =
+          realisation(model, fit.u, signal.interval, signal.length(), options.seed + 1000003ULL * (i + 1) + r);
+      for (const StaticSignal::Run& run : signal.runs)
+        std::copy_n(whole.values.begin() + static_cast<std::ptrdiff_t>(run.start), run.count,
+                    signal.values.begin() + static_cast<std::ptrdiff_t>(run.first));
+      drawn.push_back(std::move(signal));
+    }
+    refits[i] = fit_maximum_likelihood(Likelihood(drawn, model), fit.u).u;
+  });
   for (std::size_t p = 0; p < parameters.size(); ++p) {
     std::vector<double> off;
     for (const auto& u : refits) off.push_back(u[p] - fit.u[p]);

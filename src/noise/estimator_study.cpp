@@ -1,7 +1,6 @@
 #include "coast/noise/estimator_study.hpp"
 
 #include <fmt/format.h>
-#include <tbb/parallel_for.h>
 
 #include <atomic>
 #include <chrono>
@@ -9,7 +8,7 @@
 
 #include "candidate.hpp"
 #include "coast/noise/calibration.hpp"
-#include "coast/record/own_group.hpp"
+#include "coast/parallel.hpp"
 
 namespace coast::noise {
 
@@ -177,18 +176,14 @@ EstimatorStudyResult run_estimator_study(const EstimatorStudy& study, const std:
   if (!study.choices.empty()) result.chosen.resize(study.runs);
   result.restitution.resize(study.restitution.runs);
   std::atomic<std::size_t> done = 0;
-  tbb::parallel_for(
-      std::size_t{0}, study.runs,
-      [&](std::size_t number) {
-        const Run run = draw(study, number);
-        for (std::size_t e = 0; e < study.estimators.size(); ++e)
-          result.fits[e][number] = fit_run(study, study.estimators[e], run);
-        if (!study.choices.empty()) result.chosen[number] = choice_of(study, run);
-        if (number < study.restitution.runs)
-          result.restitution[number] = restitution_of(study, result.fits[study.restitution.estimator][number], run);
-        if (progress) progress(static_cast<double>(++done) / static_cast<double>(study.runs));
-      },
-      OwnGroup().group());
+  coast::parallel_for(std::size_t{0}, study.runs, [&](std::size_t number) {
+    const Run run = draw(study, number);
+    for (std::size_t e = 0; e < study.estimators.size(); ++e) result.fits[e][number] = fit_run(study, study.estimators[e], run);
+    if (!study.choices.empty()) result.chosen[number] = choice_of(study, run);
+    if (number < study.restitution.runs)
+      result.restitution[number] = restitution_of(study, result.fits[study.restitution.estimator][number], run);
+    if (progress) progress(static_cast<double>(++done) / static_cast<double>(study.runs));
+  });
   return result;
 }
 

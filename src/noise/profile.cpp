@@ -1,9 +1,8 @@
-#include <tbb/parallel_for.h>
 
 #include <cmath>
 
 #include "coast/noise/uncertainty.hpp"
-#include "coast/record/own_group.hpp"
+#include "coast/parallel.hpp"
 #include "polish.hpp"
 #include "profile_search.hpp"
 #include "short_likelihood.hpp"
@@ -138,25 +137,21 @@ std::vector<ProfileInterval> profile_intervals(const Likelihood& likelihood, con
     const Followed whole([&](const std::vector<double>& u) { return likelihood.slope(u); }, likelihood.model(),
                          likelihood.scale(), fit.u);
     const Eigen::MatrixXd covariance = cramer_rao(whole.information());
-    tbb::parallel_for(
-        std::size_t{0}, intervals.size(),
-        [&](std::size_t i) { intervals[i] = interval_about(fit.u[i], whole, i, sd_of(covariance, i)); }, OwnGroup().group());
+    coast::parallel_for(std::size_t{0}, intervals.size(),
+                        [&](std::size_t i) { intervals[i] = interval_about(fit.u[i], whole, i, sd_of(covariance, i)); });
     return intervals;
   }
   const Eigen::MatrixXd information = likelihood.slope(fit.u).information;
   const Eigen::MatrixXd covariance = cramer_rao(information);
   const Extracts extracts(likelihood, fit);
-  tbb::parallel_for(
-      std::size_t{0}, intervals.size(),
-      [&](std::size_t i) {
-        const double sd = sd_of(covariance, i);
-        // A well-known parameter has a parabolic log-likelihood, and an extract has only part of a long record's information.
-        if (sd < kSharp)
-          intervals[i] = {fit.u[i] - kProfileRoot95 * sd, fit.u[i] + kProfileRoot95 * sd};
-        else
-          intervals[i] = interval_about(fit.u[i], extracts.of(i, information), i, sd);
-      },
-      OwnGroup().group());
+  coast::parallel_for(std::size_t{0}, intervals.size(), [&](std::size_t i) {
+    const double sd = sd_of(covariance, i);
+    // A well-known parameter has a parabolic log-likelihood, and an extract has only part of a long record's information.
+    if (sd < kSharp)
+      intervals[i] = {fit.u[i] - kProfileRoot95 * sd, fit.u[i] + kProfileRoot95 * sd};
+    else
+      intervals[i] = interval_about(fit.u[i], extracts.of(i, information), i, sd);
+  });
   return intervals;
 }
 

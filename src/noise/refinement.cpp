@@ -1,7 +1,4 @@
 #include "refinement.hpp"
-#include "coast/record/own_group.hpp"
-
-#include <tbb/parallel_for.h>
 
 #include <algorithm>
 #include <cmath>
@@ -11,6 +8,7 @@
 #include <span>
 
 #include "candidate.hpp"
+#include "coast/parallel.hpp"
 #include "full_fit.hpp"
 #include "kalman/fixed_model.hpp"
 #include "model_search.hpp"
@@ -119,8 +117,7 @@ class Refinement {
     return penalty(step.model, independent_squares(spectral_slope(spectrum_, step.model, step.u).information), samples_);
   }
   void rank(std::vector<SpectralStep>& steps) const {
-    tbb::parallel_for(
-        std::size_t{0}, steps.size(), [&](std::size_t i) { steps[i] = ranked(std::move(steps[i])); }, OwnGroup().group());
+    coast::parallel_for(std::size_t{0}, steps.size(), [&](std::size_t i) { steps[i] = ranked(std::move(steps[i])); });
     std::ranges::sort(steps, {}, &SpectralStep::cost);
   }
   bool follow(std::vector<SpectralStep> steps, SpectralStep& now) {

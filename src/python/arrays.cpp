@@ -2,7 +2,7 @@
 
 #include <pybind11/numpy.h>
 
-#include <span>
+#include <cstdint>
 
 #include "coast/geo/earth.hpp"
 #include "coast/geo/rotation.hpp"

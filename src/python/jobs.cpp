@@ -3,6 +3,7 @@
 #include <pybind11/stl.h>
 #include <pybind11/stl/filesystem.h>
 
+#include <array>
 #include <filesystem>
 #include <memory>
 #include <optional>
@@ -15,6 +16,7 @@
 #include "coast/jobs/compare.hpp"
 #include "coast/jobs/diagnose.hpp"
 #include "coast/jobs/estimator_study.hpp"
+#include "coast/jobs/file_kind.hpp"
 #include "coast/jobs/inspect.hpp"
 #include "coast/jobs/outage.hpp"
 #include "coast/jobs/ppk.hpp"
@@ -92,7 +94,7 @@ class Processed : public Outcome {
 };
 
 std::unique_ptr<Processed> process(const py::object& what, const std::string& folder, const Call& call) {
-  const jobs::RunConfig config = jobs::read_run_config(tree_from(what, folder));
+  const jobs::RunConfig config = jobs::read_run_config(tree_from(what, folder, "process"));
   const fs::path out = folder_for(config, call);
   jobs::ProcessedMission mission = in_background(call.listener, call.threads, [&](const jobs::Progress& progress) {
     jobs::Recordings recordings = jobs::load(config, progress);
@@ -106,12 +108,6 @@ std::unique_ptr<Processed> process(const py::object& what, const std::string& fo
   return std::make_unique<Processed>(config, std::move(mission));
 }
 
-/// The file's own word on what it is; nothing in an IMU file.
-std::string schema_of(const config::Node& root) {
-  const auto schema = root.find("schema");
-  return schema && schema->is_scalar() ? schema->text() : "";
-}
-
 bool is_yaml(const py::object& what) {
   if (py::isinstance<py::dict>(what)) return true;
   const std::string extension = what.cast<fs::path>().extension().string();
@@ -121,20 +117,19 @@ bool is_yaml(const py::object& what) {
 std::unique_ptr<Outcome> calibrate(const py::object& what, const std::string& folder, const Call& call) {
   const auto calibrated = [](const auto& config, const auto& progress) { return jobs::calibrate(config, progress); };
   if (!is_yaml(what)) return run(jobs::read_calibrate(what.cast<fs::path>()), call, calibrated);
-  const config::Node root = tree_from(what, folder);
-  const std::string schema = schema_of(root);
-  if (schema.starts_with("coast.estimator_study/"))
+  const config::Node root = tree_from(what, folder, "calibrate");
+  if (jobs::names_schema(root, "coast.estimator_study/"))
     return run(jobs::read_estimator_study(root), call,
                [](const auto& config, const auto& progress) { return jobs::estimator_study(config, progress); });
-  if (schema.starts_with("coast.tumble/"))
+  if (jobs::names_schema(root, "coast.tumble/"))
     return run(jobs::read_tumble(root), call,
                [](const auto& config, const auto& progress) { return jobs::tumble_calibration(config, progress); });
   return run(jobs::read_calibrate(root), call, calibrated);
 }
 
 std::unique_ptr<Outcome> synth(const py::object& what, const std::string& folder, const Call& call) {
-  const config::Node root = tree_from(what, folder);
-  if (schema_of(root).starts_with("coast.array_study/"))
+  const config::Node root = tree_from(what, folder, "synth");
+  if (jobs::names_schema(root, "coast.array_study/"))
     return run(jobs::read_array_study(root), call,
                [](const auto& config, const auto& progress) { return jobs::array_study(config, progress); });
   return run(jobs::read_synth(root), call,
@@ -142,24 +137,24 @@ std::unique_ptr<Outcome> synth(const py::object& what, const std::string& folder
 }
 
 std::unique_ptr<Outcome> ppk(const py::object& what, const std::string& folder, const Call& call) {
-  return run(jobs::read_ppk(tree_from(what, folder)), call,
+  return run(jobs::read_ppk(tree_from(what, folder, "ppk")), call,
              [](const auto& config, const auto& progress) { return jobs::ppk(config, progress); });
 }
 
 std::unique_ptr<Outcome> outage(const py::object& what, const std::string& folder, const Call& call) {
-  return run(jobs::read_outage(tree_from(what, folder)), call,
+  return run(jobs::read_outage(tree_from(what, folder, "outage")), call,
              [&call](const auto& config, const auto& progress) { return jobs::outage(config, progress, call.out); });
 }
 
 std::unique_ptr<Outcome> simulate(const py::object& what, const std::string& folder, const Call& call,
                                   std::optional<std::uint64_t> seed) {
-  return run(jobs::read_simulate(tree_from(what, folder), seed), call,
+  return run(jobs::read_simulate(tree_from(what, folder, "simulate"), seed), call,
              [](const auto& config, const auto& progress) { return jobs::simulate(config, progress); });
 }
 
 std::unique_ptr<Outcome> diagnose(const py::object& what, const std::string& folder, const Call& call, int twins, bool quick,
                                   const fs::path& simulation) {
-  jobs::DiagnosisConfig config = jobs::read_diagnose(tree_from(what, folder));
+  jobs::DiagnosisConfig config = jobs::read_diagnose(tree_from(what, folder, "diagnose"));
   config.twins = twins;
   config.quick = quick;
   config.simulation = simulation;
@@ -195,7 +190,6 @@ void register_results(py::module_& module) {
       .def_property_readonly("verdict", of([](const jobs::ProcessResult& r) { return jobs::name(r.verdict.standing()); }))
       .def_property_readonly("verdict_line", of([](const jobs::ProcessResult& r) { return r.verdict.line(); }))
       .def_property_readonly("accepted", [](const Processed& p) { return p.config.accept; })
-      .def_property_readonly("start_ns", of([](const jobs::ProcessResult& r) { return r.start.nanoseconds(); }))
       .def_property_readonly("resolved", of([](const jobs::ProcessResult& r) { return r.resolved; }))
       .def("trajectory", [](const Processed& p) { return trajectory_arrays(p.mission.delivered); })
       .def("forward", [](const Processed& p) { return trajectory_arrays(p.mission.forward); })

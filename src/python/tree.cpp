@@ -10,6 +10,7 @@
 
 #include "coast/config/builder.hpp"
 #include "coast/io/yaml.hpp"
+#include "coast/jobs/file_kind.hpp"
 #include "coast/record/table.hpp"
 
 namespace coast::python {
@@ -81,9 +82,12 @@ class Builder {
 
 }  // namespace
 
-config::Node tree_from(const py::object& config, const std::string& folder) {
-  if (!py::isinstance<py::dict>(config)) return io::load_yaml(config.cast<std::filesystem::path>());
-  return Builder(std::filesystem::path(folder) / "dict").build(config.cast<py::dict>());
+config::Node tree_from(const py::object& config, const std::string& folder, std::string_view command) {
+  config::Node root = py::isinstance<py::dict>(config)
+                          ? Builder(std::filesystem::path(folder) / "dict").build(config.cast<py::dict>())
+                          : io::load_yaml(config.cast<std::filesystem::path>());
+  jobs::require_kind(root, command);
+  return root;
 }
 
 }  // namespace coast::python

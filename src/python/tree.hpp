@@ -3,14 +3,17 @@
 
 #include <pybind11/pybind11.h>
 
+#include <string>
+#include <string_view>
+
 #include "coast/config/node.hpp"
 
 namespace coast::python {
 
-/// A file (str, path-like), or a dict with the keys of that file. In a dict, a table may stand where a file of numbers is
-/// expected: an object of `tables` (a type of the package coast), with name, header and columns.
-/// @param folder  from which relative paths of a dict count
+/// A file (str, path-like), or a dict with the keys of that file, in which a coast.Table may stand for a file of numbers.
+/// @param folder   from which relative paths of a dict count
+/// @param command  of the program, for which the configuration has to be
 /// @throws InputError
-[[nodiscard]] config::Node tree_from(const pybind11::object& config, const std::string& folder);
+[[nodiscard]] config::Node tree_from(const pybind11::object& config, const std::string& folder, std::string_view command);
 
 }  // namespace coast::python

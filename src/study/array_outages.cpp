@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 #include <tbb/global_control.h>
-#include <tbb/parallel_for.h>
 #include <tbb/task_arena.h>
 
 #include <cmath>
@@ -13,8 +12,8 @@
 #include "coast/array/extended.hpp"
 #include "coast/array/remaining.hpp"
 #include "coast/ins/mounting.hpp"
+#include "coast/parallel.hpp"
 #include "coast/record/error.hpp"
-#include "coast/record/own_group.hpp"
 #include "coast/simulate/sensor_errors.hpp"
 #include "seed_outage.hpp"
 
@@ -190,17 +189,14 @@ std::vector<ArrayOutageRun> run_array_outages(const ArrayOutagePlan& plan, const
   for (ArrayOutageRun& run : runs) run.outages.resize(plan.seeds);
   std::mutex mutex;
   std::size_t done = 0;
-  tbb::parallel_for(
-      std::size_t{0}, plan.seeds,
-      [&](std::size_t s) {
-        std::vector<OutageResult> of_seed;
-        // A thread that waits inside one seed must not begin another: each needs its own memory.
-        tbb::this_task_arena::isolate([&] { of_seed = run_array_seed(plan, mission, outage, plan.first_seed + s); });
-        for (std::size_t i = 0; i < runs.size(); ++i) runs[i].outages[s] = std::move(of_seed[i]);
-        const std::scoped_lock lock(mutex);
-        if (progress) progress(static_cast<double>(++done) / static_cast<double>(plan.seeds));
-      },
-      OwnGroup().group());
+  coast::parallel_for(std::size_t{0}, plan.seeds, [&](std::size_t s) {
+    std::vector<OutageResult> of_seed;
+    // A thread that waits inside one seed must not begin another: each needs its own memory.
+    tbb::this_task_arena::isolate([&] { of_seed = run_array_seed(plan, mission, outage, plan.first_seed + s); });
+    for (std::size_t i = 0; i < runs.size(); ++i) runs[i].outages[s] = std::move(of_seed[i]);
+    const std::scoped_lock lock(mutex);
+    if (progress) progress(static_cast<double>(++done) / static_cast<double>(plan.seeds));
+  });
   return runs;
 }
 

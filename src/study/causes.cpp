@@ -1,7 +1,6 @@
 #include "coast/study/causes.hpp"
 
 #include <fmt/format.h>
-#include <tbb/parallel_for.h>
 
 #include <algorithm>
 #include <cmath>
@@ -9,8 +8,8 @@
 #include <optional>
 
 #include "cause_hypotheses.hpp"
+#include "coast/parallel.hpp"
 #include "coast/record/error.hpp"
-#include "coast/record/own_group.hpp"
 
 namespace coast::study {
 
@@ -137,15 +136,11 @@ void run(const Excerpt& excerpt, const Setup& setup, std::vector<Profile>& profi
     profile.fits.resize(profile.noise.size());
     for (std::size_t i = done; i < profile.noise.size(); ++i) missing.emplace_back(&profile, i);
   }
-  tbb::parallel_for(
-      std::size_t{0}, missing.size(),
-      [&](std::size_t k) {
-        auto& [profile, i] = missing[k];
-        const bool aligned = i > 0 && profile->fits.front().start;
-        profile->fits[i] =
-            fit(excerpt, setup, profile->hypothesis, profile->noise[i], aligned ? &profile->fits.front() : nullptr);
-      },
-      OwnGroup().group());
+  coast::parallel_for(std::size_t{0}, missing.size(), [&](std::size_t k) {
+    auto& [profile, i] = missing[k];
+    const bool aligned = i > 0 && profile->fits.front().start;
+    profile->fits[i] = fit(excerpt, setup, profile->hypothesis, profile->noise[i], aligned ? &profile->fits.front() : nullptr);
+  });
 }
 
 // A fit requested in the run file is not reported as advice.

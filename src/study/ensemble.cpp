@@ -2,15 +2,14 @@
 
 #include <fmt/format.h>
 #include <tbb/global_control.h>
-#include <tbb/parallel_for.h>
 #include <tbb/task_arena.h>
 
 #include <algorithm>
 #include <mutex>
 
 #include "coast/ins/mounting.hpp"
+#include "coast/parallel.hpp"
 #include "coast/record/error.hpp"
-#include "coast/record/own_group.hpp"
 #include "seed_outage.hpp"
 
 namespace coast::study {
@@ -153,8 +152,7 @@ void Ensemble::run(std::size_t recording, const std::function<void(double)>& pro
 
 StudyResult run_ensemble(const EnsemblePlan& plan, const std::function<void(double)>& progress, const StudyJournal& journal) {
   Ensemble ensemble(plan, journal);
-  tbb::parallel_for(
-      std::size_t{0}, ensemble.recordings(), [&](std::size_t i) { ensemble.run(i, progress); }, OwnGroup().group());
+  coast::parallel_for(std::size_t{0}, ensemble.recordings(), [&](std::size_t i) { ensemble.run(i, progress); });
   return ensemble.take();
 }
 

@@ -1,12 +1,11 @@
 #include "coast/study/outage_runs.hpp"
-#include "coast/record/own_group.hpp"
 
-#include <tbb/parallel_for.h>
 #include <tbb/task_arena.h>
 
 #include <algorithm>
 #include <mutex>
 
+#include "coast/parallel.hpp"
 #include "stage.hpp"
 
 namespace coast::study {
@@ -118,22 +117,19 @@ std::vector<OutageResult> run_outages(const PreparedMission& mission, const esti
   const Futures futures(mission, knots, branches);
   std::vector<OutageResult> results(outages.size());
   std::mutex shared;  // the store's file and the sink
-  tbb::parallel_for(
-      std::size_t{0}, outages.size(),
-      [&](std::size_t i) {
-        estimate::Knot from;
-        {
-          const std::scoped_lock lock(shared);
-          from = knots.at(branches[i].from);
-        }
-        // A thread that waits inside one outage must not begin another: each has its own knots in memory.
-        tbb::this_task_arena::isolate(
-            [&] { results[i] = run_branch(mission, truth, outages[i], from, branches[i].until, futures.of(branches[i])); });
-        if (!sink) return;
-        const std::scoped_lock lock(shared);
-        sink(i, results[i]);
-      },
-      OwnGroup().group());
+  coast::parallel_for(std::size_t{0}, outages.size(), [&](std::size_t i) {
+    estimate::Knot from;
+    {
+      const std::scoped_lock lock(shared);
+      from = knots.at(branches[i].from);
+    }
+    // A thread that waits inside one outage must not begin another: each has its own knots in memory.
+    tbb::this_task_arena::isolate(
+        [&] { results[i] = run_branch(mission, truth, outages[i], from, branches[i].until, futures.of(branches[i])); });
+    if (!sink) return;
+    const std::scoped_lock lock(shared);
+    sink(i, results[i]);
+  });
   return results;
 }
 

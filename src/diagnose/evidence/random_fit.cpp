@@ -1,11 +1,10 @@
 #include "evidence/random_fit.hpp"
-#include "coast/record/own_group.hpp"
-
-#include <tbb/parallel_invoke.h>
 
 #include <algorithm>
 #include <cmath>
 #include <utility>
+
+#include "coast/parallel.hpp"
 
 namespace coast::diagnose {
 
@@ -40,8 +39,8 @@ struct Bracket {
 Bracket uphill(const GainOfRoot& gain_at, double log_root) {
   constexpr int kMost = 8;
   Bracket b{log_root, 0.0, 0.0, 0.0};
-  tbb::parallel_invoke([&] { b.gain = gain_at(log_root); }, [&] { b.low = gain_at(log_root - kLogStep); },
-                       [&] { b.high = gain_at(log_root + kLogStep); }, OwnGroup().group());
+  coast::parallel_invoke([&] { b.gain = gain_at(log_root); }, [&] { b.low = gain_at(log_root - kLogStep); },
+                         [&] { b.high = gain_at(log_root + kLogStep); });
   for (int i = 0; i < kMost && std::max(b.low, b.high) > b.gain; ++i) {
     const bool up = b.high > b.low;
     b.log_root += up ? kLogStep : -kLogStep;

@@ -1,13 +1,11 @@
 #include "search/candidates.hpp"
-#include "coast/record/own_group.hpp"
-
-#include <tbb/parallel_for.h>
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <utility>
 
+#include "coast/parallel.hpp"
 #include "search/movement.hpp"
 
 namespace coast::diagnose {
@@ -107,12 +105,9 @@ void Candidates::run_all() {
   if (pending.empty()) return;
   const std::vector<RunPtr> first = context_->runs.try_all(requests);
   std::vector<std::optional<Movement>> steps(first.size());
-  tbb::parallel_for(
-      std::size_t{0}, first.size(),
-      [&](std::size_t i) {
-        if (first[i]) steps[i] = movement(first[i]->sizes());
-      },
-      OwnGroup().group());
+  coast::parallel_for(std::size_t{0}, first.size(), [&](std::size_t i) {
+    if (first[i]) steps[i] = movement(first[i]->sizes());
+  });
   std::vector<Runs::Request> next;
   for (std::size_t i = 0; i < first.size(); ++i)
     if (first[i]) next.push_back({moved(first[i]->explanation(), *steps[i]), first[i]});

@@ -1,12 +1,10 @@
 #include "search/explained_run.hpp"
 
-#include <tbb/parallel_for.h>
-
 #include <algorithm>
 #include <utility>
 
+#include "coast/parallel.hpp"
 #include "coast/record/error.hpp"
-#include "coast/record/own_group.hpp"
 #include "evidence/random_fit.hpp"
 
 namespace coast::diagnose {
@@ -176,17 +174,14 @@ std::vector<RunPtr> Runs::try_all(const std::vector<Request>& requests) {
   std::vector<RunPtr> runs;
   for (const Request& one : requests) runs.push_back(remembered(one.explanation, *one.about));
   const std::vector<RunPtr> known = runs;
-  tbb::parallel_for(
-      std::size_t{0}, requests.size(),
-      [&](std::size_t i) {
-        if (runs[i]) return;
-        try {
-          runs[i] = make(requests[i].explanation, *requests[i].about);
-        } catch (const NumericalError&) {
-          runs[i] = nullptr;
-        }
-      },
-      OwnGroup().group());
+  coast::parallel_for(std::size_t{0}, requests.size(), [&](std::size_t i) {
+    if (runs[i]) return;
+    try {
+      runs[i] = make(requests[i].explanation, *requests[i].about);
+    } catch (const NumericalError&) {
+      runs[i] = nullptr;
+    }
+  });
   for (std::size_t i = 0; i < runs.size(); ++i)
     if (runs[i] && !known[i]) remember(runs[i]);
   return runs;

@@ -1,11 +1,10 @@
 #include "verdict/held_out.hpp"
-#include "coast/record/own_group.hpp"
-
-#include <tbb/parallel_for_each.h>
 
 #include <algorithm>
 #include <cmath>
 #include <utility>
+
+#include "coast/parallel.hpp"
 
 namespace coast::diagnose {
 
@@ -82,23 +81,20 @@ std::vector<SelectedEffect> sizes_without(std::size_t fold, const Blocks& blocks
 /// Each effect on the blocks of a fold, with the others. @param all  log-likelihoods with all of them
 void add_effects(const std::vector<SelectedEffect>& values, const std::vector<double>& all, std::size_t fold,
                  const Blocks& blocks, const State& state, const Context& context, std::vector<Verification::Effect>& effects) {
-  tbb::parallel_for_each(
-      effects,
-      [&](Verification::Effect& effect) {
-        std::vector<SelectedEffect> others = values;
-        const auto at = others.begin() + static_cast<std::ptrdiff_t>(effect.first);
-        others.erase(at, at + static_cast<std::ptrdiff_t>(effect.count));
-        const std::vector<double> less = log_likelihoods(context.runs.with_sizes(others, *state.run), blocks);
-        effect.begins = values[effect.first].from.has_value();
-        const double by_noise = state.run->gain_by_own_noise(effect.first, effect.count) / static_cast<double>(blocks.count());
-        for (std::size_t b = fold; b < blocks.count(); b += 2) {
-          const double gain = all[b] - less[b] - by_noise;
-          effect.gain += gain;
-          if (gain > 0.0) effect.better += 1.0 / static_cast<double>(blocks.count());
-          ++effect.blocks;
-        }
-      },
-      OwnGroup().group());
+  coast::parallel_for_each(effects, [&](Verification::Effect& effect) {
+    std::vector<SelectedEffect> others = values;
+    const auto at = others.begin() + static_cast<std::ptrdiff_t>(effect.first);
+    others.erase(at, at + static_cast<std::ptrdiff_t>(effect.count));
+    const std::vector<double> less = log_likelihoods(context.runs.with_sizes(others, *state.run), blocks);
+    effect.begins = values[effect.first].from.has_value();
+    const double by_noise = state.run->gain_by_own_noise(effect.first, effect.count) / static_cast<double>(blocks.count());
+    for (std::size_t b = fold; b < blocks.count(); b += 2) {
+      const double gain = all[b] - less[b] - by_noise;
+      effect.gain += gain;
+      if (gain > 0.0) effect.better += 1.0 / static_cast<double>(blocks.count());
+      ++effect.blocks;
+    }
+  });
 }
 
 HeldOut summary(const std::vector<double>& with, const std::vector<double>& without, double epochs) {

@@ -1,14 +1,12 @@
 #include "verdict/outages.hpp"
 
-#include <tbb/parallel_for_each.h>
-
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <vector>
 
+#include "coast/parallel.hpp"
 #include "coast/record/error.hpp"
-#include "coast/record/own_group.hpp"
 
 namespace coast::diagnose {
 
@@ -60,12 +58,9 @@ std::optional<std::size_t> what_spoils_outages(const State& state, const Context
   };
   std::vector<Without> all;
   for_each_selection(state.account, [&](std::size_t first, std::size_t count) { all.push_back({first, count}); });
-  tbb::parallel_for_each(
-      all,
-      [&](Without& one) {
-        one.rms = fit_with(state.explanation.without(one.first, one.count).effects, state, context).outage_rms_m;
-      },
-      OwnGroup().group());
+  coast::parallel_for_each(all, [&](Without& one) {
+    one.rms = fit_with(state.explanation.without(one.first, one.count).effects, state, context).outage_rms_m;
+  });
   return std::ranges::min_element(all, {}, &Without::rms)->first;
 }
 

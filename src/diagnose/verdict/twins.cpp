@@ -1,7 +1,5 @@
 #include "verdict/twins.hpp"
 
-#include <tbb/parallel_for.h>
-
 #include <algorithm>
 #include <cmath>
 #include <functional>
@@ -9,8 +7,8 @@
 #include <utility>
 
 #include "coast/diagnose/twin.hpp"
+#include "coast/parallel.hpp"
 #include "coast/record/error.hpp"
-#include "coast/record/own_group.hpp"
 #include "coast/simulate/random.hpp"
 #include "evidence/statistics.hpp"
 #include "search/begin.hpp"
@@ -80,19 +78,16 @@ std::vector<std::vector<Statistic>> all_figures(std::size_t count, const std::fu
   std::vector<std::vector<Statistic>> figures(count);
   std::mutex telling;  // one at a time
   std::size_t done = 0;
-  tbb::parallel_for(
-      std::size_t{0}, count,
-      [&](std::size_t i) {
-        try {
-          figures[i] = figures_of(recording(i), seed);
-        } catch (const NumericalError&) {
-          figures[i].clear();
-        }
-        const std::lock_guard lock(telling);
-        ++done;
-        progress(static_cast<double>(done) / static_cast<double>(count));
-      },
-      OwnGroup().group());
+  coast::parallel_for(std::size_t{0}, count, [&](std::size_t i) {
+    try {
+      figures[i] = figures_of(recording(i), seed);
+    } catch (const NumericalError&) {
+      figures[i].clear();
+    }
+    const std::lock_guard lock(telling);
+    ++done;
+    progress(static_cast<double>(done) / static_cast<double>(count));
+  });
   std::erase_if(figures, [](const std::vector<Statistic>& one) { return one.empty(); });
   return figures;
 }

@@ -1,7 +1,6 @@
 #include "coast/jobs/calibrate.hpp"
 
 #include <fmt/format.h>
-#include <tbb/parallel_for.h>
 
 #include <algorithm>
 #include <array>
@@ -11,8 +10,8 @@
 #include <utility>
 
 #include "coast/noise/rest.hpp"
+#include "coast/parallel.hpp"
 #include "coast/record/error.hpp"
-#include "coast/record/own_group.hpp"
 #include "common/tell.hpp"
 
 namespace coast::jobs {
@@ -113,34 +112,31 @@ void estimate(const CalibrationConfig& config, const std::vector<noise::StaticRe
   const double whole = 1.0 + kTest * tests;
   result.axes.resize(config.axes.size());
   JointProgress joint(progress, config.axes.size());
-  tbb::parallel_for(
-      std::size_t{0}, config.axes.size(),
-      [&](std::size_t i) {
-        CalibratedAxis& axis = result.axes[i];
-        axis.axis = config.axes[i];
-        std::vector<noise::StaticSignal> others;
-        for (std::size_t r = 0; r < records.size(); ++r)
-          (r < config.records.size() ? axis.signals : others).push_back(records[r].of(axis.axis.sensor, axis.axis.axis));
-        noise::CalibrationOptions options = config.options(axis.axis.sensor);
-        double before = 0.0;
-        double work = 1.0;
-        options.progress = [&](const char*, double fraction) { joint.set(i, (before + work * fraction) / whole); };
-        try {
-          axis.result = noise::calibrate(axis.signals, options);
-          axis.signals = noise::without_warm_ups(std::move(axis.signals), axis.result.warm_ups);
-          before = std::exchange(work, kTest);
-          for (const noise::StaticSignal& record : others) {
-            axis.tests.push_back(
-                {record.source, noise::test_on(record, axis.result.best().model, axis.result.best().fit.u, options)});
-            before += kTest;
-          }
-        } catch (const NumericalError& error) {
-          throw NumericalError(axis.axis.title(), "", error.what());
-        }
-        axis.own = own_estimates(axis.result, axis.signals);
-        joint.set(i, 1.0);
-      },
-      OwnGroup().group());
+  coast::parallel_for(std::size_t{0}, config.axes.size(), [&](std::size_t i) {
+    CalibratedAxis& axis = result.axes[i];
+    axis.axis = config.axes[i];
+    std::vector<noise::StaticSignal> others;
+    for (std::size_t r = 0; r < records.size(); ++r)
+      (r < config.records.size() ? axis.signals : others).push_back(records[r].of(axis.axis.sensor, axis.axis.axis));
+    noise::CalibrationOptions options = config.options(axis.axis.sensor);
+    double before = 0.0;
+    double work = 1.0;
+    options.progress = [&](const char*, double fraction) { joint.set(i, (before + work * fraction) / whole); };
+    try {
+      axis.result = noise::calibrate(axis.signals, options);
+      axis.signals = noise::without_warm_ups(std::move(axis.signals), axis.result.warm_ups);
+      before = std::exchange(work, kTest);
+      for (const noise::StaticSignal& record : others) {
+        axis.tests.push_back(
+            {record.source, noise::test_on(record, axis.result.best().model, axis.result.best().fit.u, options)});
+        before += kTest;
+      }
+    } catch (const NumericalError& error) {
+      throw NumericalError(axis.axis.title(), "", error.what());
+    }
+    axis.own = own_estimates(axis.result, axis.signals);
+    joint.set(i, 1.0);
+  });
 }
 
 void tell_warnings(const CalibrationResult& result, const Progress& progress) {

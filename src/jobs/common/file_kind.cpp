@@ -52,7 +52,10 @@ const ConfigurationFile* kind_of(const config::Node& root) {
 }  // namespace
 
 void require_kind(const std::filesystem::path& file, std::string_view command) {
-  const config::Node root = io::load_yaml(file);
+  require_kind(io::load_yaml(file), command);
+}
+
+void require_kind(const config::Node& root, std::string_view command) {
   if (!root.is_map()) return;  // left to the reader of the file
   const ConfigurationFile* kind = kind_of(root);
   const bool positions_of_a_run = kind != nullptr && command == "ppk" && kind->command == "process";
@@ -60,14 +63,19 @@ void require_kind(const std::filesystem::path& file, std::string_view command) {
   throw root.error(fmt::format("this file is {} (`schema: {}1`)", kind->is, kind->schema),
                    fmt::format("a file for coast {} (`schema: {}1`)", command,
                                std::ranges::find(kinds(), command, &ConfigurationFile::command)->schema),
-                   kind->command.empty() ? "It is named in a run.yaml, as imu.error_model or imu.calibration."
-                                         : fmt::format("The subcommand for it is: coast {} {}", kind->command, file.string()));
+                   kind->command.empty()
+                       ? "It is named in a run.yaml, as imu.error_model or imu.calibration."
+                       : fmt::format("The subcommand for it is: coast {} {}", kind->command, root.file().string()));
 }
 
 bool names_schema(const std::filesystem::path& file, std::string_view schema) {
   const std::string extension = file.extension().string();
   if (extension != ".yaml" && extension != ".yml") return false;
-  const auto named = io::load_yaml(file).find("schema");
+  return names_schema(io::load_yaml(file), schema);
+}
+
+bool names_schema(const config::Node& root, std::string_view schema) {
+  const auto named = root.find("schema");
   return named && named->is_scalar() && named->text().starts_with(schema);
 }
 

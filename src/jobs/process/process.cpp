@@ -1,14 +1,13 @@
 // The sequence of the stages.
 
 #include "coast/jobs/process.hpp"
-#include "coast/record/own_group.hpp"
 
 #include <fmt/format.h>
-#include <tbb/parallel_invoke.h>
 
 #include <algorithm>
 #include <cmath>
 
+#include "coast/parallel.hpp"
 #include "process/page/curves.hpp"
 #include "process/stages.hpp"
 #include "process/trajectory_output.hpp"
@@ -88,13 +87,12 @@ ProcessResult process(const RunConfig& config, Recordings recordings, const Traj
   // They temporarily reverse the recordings, so nothing may run concurrently.
   EarlierPasses passes = earlier_passes(work, work.options());
   Delivery delivery;
-  tbb::parallel_invoke([&] { delivery = deliver(work, passes, gap_free, sinks, result); },
-                       [&] {
-                         constexpr double kPriorSd = 0.5;  // m: large compared with errors of a tape measure
-                         if (mission->mission().gnss.fixes.size() > 10)
-                           result.lever_arm = study::check_lever_arm(*mission, kPriorSd, {});
-                       },
-                       OwnGroup().group());
+  coast::parallel_invoke([&] { delivery = deliver(work, passes, gap_free, sinks, result); },
+                         [&] {
+                           constexpr double kPriorSd = 0.5;  // m: large compared with errors of a tape measure
+                           if (mission->mission().gnss.fixes.size() > 10)
+                             result.lever_arm = study::check_lever_arm(*mission, kPriorSd, {});
+                         });
   passes.backward.reset();
   offer_gnss_noise(work, result);
   study_sweep(work, delivery, passes, result);

@@ -1,14 +1,13 @@
 #include "coast/jobs/synth.hpp"
 
 #include <fmt/format.h>
-#include <tbb/parallel_for.h>
 
 #include <cmath>
 #include <mutex>
 
 #include "coast/array/extended.hpp"
 #include "coast/array/resample.hpp"
-#include "coast/record/own_group.hpp"
+#include "coast/parallel.hpp"
 #include "common/tell.hpp"
 #include "synth/config.hpp"
 #include "synth/result.hpp"
@@ -96,28 +95,23 @@ void merge_all(const ArrayConfig& config, const std::optional<record::ImuRecordi
   }
   std::mutex mutex;
   double done = 0.0;
-  tbb::parallel_for(
-      0, array::kChannels,
-      [&](int c) {
-        const auto at = static_cast<std::size_t>(c);
-        std::optional<Eigen::VectorXd> truth;
-        if (reference) truth = reference->values.row(c).transpose();
-        result.channels[at] = array::merge_channel(assembly.levelled, c, options, truth);
-        if (reference)
-          result.against_reference[at] = errors_against(truth->transpose(), assembly.levelled, c, result.channels[at]);
-        if (result.extended) {
-          result.remaining[at].in_words = "error states of each IMU";
-          result.channels[at].value = array::with_offsets(assembly.signals, assembly.levelled, c, result.channels[at].value,
-                                                          options.weights.row(c).transpose());
-        } else {
-          result.remaining[at] =
-              array::remaining_errors(assembly.signals, c, kAverage, array::white_share(result.channels[at]));
-        }
-        const std::scoped_lock lock(mutex);
-        done += 1.0 / array::kChannels;
-        progress("merging", done);
-      },
-      OwnGroup().group());
+  coast::parallel_for(0, array::kChannels, [&](int c) {
+    const auto at = static_cast<std::size_t>(c);
+    std::optional<Eigen::VectorXd> truth;
+    if (reference) truth = reference->values.row(c).transpose();
+    result.channels[at] = array::merge_channel(assembly.levelled, c, options, truth);
+    if (reference) result.against_reference[at] = errors_against(truth->transpose(), assembly.levelled, c, result.channels[at]);
+    if (result.extended) {
+      result.remaining[at].in_words = "error states of each IMU";
+      result.channels[at].value = array::with_offsets(assembly.signals, assembly.levelled, c, result.channels[at].value,
+                                                      options.weights.row(c).transpose());
+    } else {
+      result.remaining[at] = array::remaining_errors(assembly.signals, c, kAverage, array::white_share(result.channels[at]));
+    }
+    const std::scoped_lock lock(mutex);
+    done += 1.0 / array::kChannels;
+    progress("merging", done);
+  });
 }
 
 SynthResult merged(const ArrayConfig& config, const std::vector<record::ImuRecording>& recordings,

@@ -1,14 +1,13 @@
 #include "calibrate/page/page.hpp"
-#include "coast/record/own_group.hpp"
 
 #include <fmt/format.h>
-#include <tbb/parallel_for.h>
 
 #include <algorithm>
 #include <cmath>
 
 #include "calibrate/page/parts.hpp"
 #include "calibrate/units.hpp"
+#include "coast/parallel.hpp"
 #include "common/page_parts.hpp"
 
 namespace coast::jobs {
@@ -151,8 +150,7 @@ report::Page calibration_page(const CalibrationConfig& config, const Calibration
   for (const Sensor sensor : {Sensor::kGyro, Sensor::kAccel}) add_tiles(result, sensor, page);
   page.sections.push_back(records_section(config, result));
   std::vector<report::Section> axes(result.axes.size());
-  tbb::parallel_for(
-      std::size_t{0}, axes.size(), [&](std::size_t i) { axes[i] = axis_section(config, result.axes[i]); }, OwnGroup().group());
+  coast::parallel_for(std::size_t{0}, axes.size(), [&](std::size_t i) { axes[i] = axis_section(config, result.axes[i]); });
   for (const Sensor sensor : {Sensor::kGyro, Sensor::kAccel}) {
     if (result.of(sensor).empty()) continue;
     page.sections.push_back(sensor_section(result, sensor));
