@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 #include <tbb/global_control.h>
+#include <tbb/task_group.h>
 
 #include <algorithm>
 #include <deque>
@@ -90,8 +91,7 @@ bool keep_likelier(Searched& best, Searched other, const Context& context) {
 
 /// A search with runs of its own, beside others.
 struct Aside {
-  explicit Aside(const Context& of)
-      : runs(of.runs.recorded(), of.runs.grade(), of.runs.progress()), context{of.options, of.asked_for, runs} {}
+  explicit Aside(const Context& of) : runs(of.runs.beside()), context{of.options, of.asked_for, runs} {}
   Runs runs;
   Context context;
 };
@@ -115,7 +115,6 @@ std::optional<Searched> after(const Exchange& exchange, const Searched& before, 
 bool keep_first_likelier(const std::vector<Exchange>& exchanges, Searched& best, Context& context) {
   if (exchanges.empty()) return false;
   const Searched before = best;
-  before.state.run->complete();
   constexpr std::size_t kMost = 4;  // each remembers runs of the whole mission
   const std::size_t width = std::min(kMost, tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism));
   for (std::size_t first = 0; first < exchanges.size(); first += width) {
@@ -154,13 +153,8 @@ void try_all_constant(Searched& best, Context& context) {
   } while (keep_first_likelier(exchanges, best, context));
 }
 
-bool found_noise(const State& state) {
-  return state.account.noise || !state.explanation.random.empty();
-}
-
 /// The outcome with mean effects first; none if the filter fails on the way.
-std::optional<Searched> with_means_first(const State& start, Context& context) {
-  Searched searched{start};
+std::optional<Searched> with_means_first(Searched searched, Context& context) {
   searched.state.limits.order = Order::kMeansFirst;
   try {
     search_to_the_end(searched, context);
@@ -170,22 +164,24 @@ std::optional<Searched> with_means_first(const State& start, Context& context) {
   return searched;
 }
 
-/// The likelier of both orders, if noise was found. Where there are threads for it, they are searched at the same time.
+/// The likelier of both orders. They are the same up to the first noise that is selected although a mean effect could be; from
+/// there on they are searched at the same time, where there are threads for it.
 Searched likelier_order(const State& start, Context& context) {
   Searched best{start};
   std::optional<Searched> other;
-  Aside aside(context);
-  start.run->complete();  // both begin with it
-  if (tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism) > 1) {
-    coast::parallel_invoke([&] { search_to_the_end(best, context); }, [&] { other = with_means_first(start, aside.context); });
-  } else {
-    search_to_the_end(best, context);
-    if (found_noise(best.state)) other = with_means_first(start, aside.context);
-  }
-  if (other && found_noise(best.state)) {
-    context.runs.count(aside.runs.made());
-    keep_likelier(best, *std::move(other), context);
-  }
+  std::optional<Aside> aside;
+  tbb::task_group_context own(tbb::task_group_context::isolated);  // as those of coast::parallel_for
+  tbb::task_group beside(own);
+  Context noise_first = context;
+  noise_first.orders_part = [&](const State& state) {
+    if (aside) return;
+    aside.emplace(context);
+    beside.run([&, before = Searched{state, best.rejected}] { other = with_means_first(before, aside->context); });
+  };
+  search_to_the_end(best, noise_first);
+  beside.wait();
+  if (aside) context.runs.count(aside->runs.made());
+  if (other) keep_likelier(best, *std::move(other), context);
   return best;
 }
 

@@ -414,11 +414,5 @@ TEST(SensorStates, KeepTheLaterAxesWhereAProcessIsGone) {
   EXPECT_TRUE(((back - x).array() == 0.0 || back.array() == 0.0).all());
 }
 
-TEST(Moves, BothOrdersHaveTheSameOnes) {
-  EXPECT_EQ(moves(Order::kNoiseFirst).size(), moves(Order::kMeansFirst).size());
-  for (const Order order : {Order::kNoiseFirst, Order::kMeansFirst})
-    EXPECT_EQ(std::ranges::count(moves(order), Move{add_mean_effect}), 1);
-}
-
 }  // namespace
 }  // namespace coast

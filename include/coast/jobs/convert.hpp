@@ -35,6 +35,7 @@ void write(const ConvertConfig& config, const record::Trajectory& trajectory, co
 [[nodiscard]] std::string told(const ConvertConfig& config, const record::Trajectory& trajectory,
                                const std::filesystem::path& folder);
 
+[[nodiscard]] std::vector<std::string> convert_format_names();
 /// The formats that are written, one a line, for the help page.
 [[nodiscard]] std::string convert_formats(const std::string& indent);
 

@@ -92,8 +92,7 @@ bool ExplainedRun::found_sensors_elsewhere() const {
 }
 
 const Examination& ExplainedRun::scores() const {
-  if (!scores_) scores_ = examined({.draws = 0});
-  return *scores_;
+  return scores_.value([this] { return examined({.draws = 0}); });
 }
 
 Examination ExplainedRun::examined(ExaminationOptions options) const {
@@ -109,13 +108,7 @@ Examination ExplainedRun::examined(ExaminationOptions options) const {
 }
 
 const SizeEvidence& ExplainedRun::sizes() const {
-  if (!sizes_) sizes_ = sizes_where({});
-  return *sizes_;
-}
-
-void ExplainedRun::complete() const {
-  static_cast<void>(scores());
-  static_cast<void>(sizes());
+  return sizes_.value([this] { return sizes_where({}); });
 }
 
 SizeEvidence ExplainedRun::sizes_where(const std::function<bool(geo::GpsTime)>& counts) const {
@@ -134,6 +127,13 @@ SizeEvidence ExplainedRun::sizes_where(const std::function<bool(geo::GpsTime)>& 
 
 Runs::Runs(MissionInput recorded, Grade grade, const study::Progress& progress)
     : recorded_(std::move(recorded)), grade_(grade), progress_(progress) {}
+
+Runs::Runs(const Runs& other, std::vector<RunPtr> last)
+    : recorded_(other.recorded_), grade_(other.grade_), progress_(other.progress_), last_(std::move(last)) {}
+
+Runs Runs::beside() const {
+  return {*this, last_};
+}
 
 RunPtr Runs::first(const Explanation& explanation) {
   MissionInput input{*explanation.imu, recorded_.gnss, recorded_.setup};

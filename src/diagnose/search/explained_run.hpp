@@ -3,7 +3,9 @@
 
 #include <atomic>
 #include <memory>
+#include <mutex>
 #include <optional>
+#include <utility>
 #include <vector>
 
 #include "evidence/mission_run.hpp"
@@ -19,6 +21,28 @@ namespace coast::diagnose {
 struct SensorsAtStart {
   estimate::StateLayout layout;
   Eigen::VectorXd x;
+};
+
+/// What threads ask of a run that several searches share. Each thread that asks before it is known computes it: a thread that
+/// waited for another one's loops could be given work that waits for it.
+template <class T>
+class Remembered {
+ public:
+  template <class Compute>
+  const T& value(const Compute& compute) const {
+    {
+      const std::lock_guard lock(mutex_);
+      if (value_) return *value_;
+    }
+    T computed = compute();
+    const std::lock_guard lock(mutex_);
+    if (!value_) value_ = std::move(computed);
+    return *value_;
+  }
+
+ private:
+  mutable std::mutex mutex_;
+  mutable std::optional<T> value_;
 };
 
 /// The mission filtered and smoothed, corrected for all effects of an explanation.
@@ -44,13 +68,11 @@ class ExplainedRun {
   [[nodiscard]] double gain_by_own_noise(std::size_t first, std::size_t count) const;
   /// Whether the estimated sensor errors are far from those at its start.
   [[nodiscard]] bool found_sensors_elsewhere() const;
-  /// Scores and information, without draws. Computed when first asked for, by one thread.
+  /// Scores and information, without draws. Computed when first asked for.
   [[nodiscard]] const Examination& scores() const;
   [[nodiscard]] Examination examined(ExaminationOptions options) const;
   /// Of the sizes of its own effects. Likewise.
   [[nodiscard]] const SizeEvidence& sizes() const;
-  /// Computes both, after which several threads may ask.
-  void complete() const;
   /// Sizes from some of the innovations.
   [[nodiscard]] SizeEvidence sizes_where(const std::function<bool(geo::GpsTime)>& counts) const;
 
@@ -62,8 +84,8 @@ class ExplainedRun {
   const study::Progress& progress_;
   MissionRun run_;
   double log_likelihood_ = 0.0;
-  mutable std::optional<Examination> scores_;
-  mutable std::optional<SizeEvidence> sizes_;
+  Remembered<Examination> scores_;
+  Remembered<SizeEvidence> sizes_;
 };
 using RunPtr = std::shared_ptr<const ExplainedRun>;
 
@@ -72,6 +94,8 @@ class Runs {
  public:
   /// @param recorded  input of the diagnosis; @param progress  must outlive it
   Runs(MissionInput recorded, Grade grade, const study::Progress& progress);
+  /// For a search beside that of others: with the runs that they made last.
+  [[nodiscard]] Runs beside() const;
 
   /// From the start in the setup or from the alignment.
   [[nodiscard]] RunPtr first(const Explanation& explanation);
@@ -98,6 +122,7 @@ class Runs {
   void count(std::size_t others) { made_ += others; }
 
  private:
+  Runs(const Runs& other, std::vector<RunPtr> last);
   [[nodiscard]] MissionInput explained(const Explanation& explanation, const MissionRun& along) const;
   [[nodiscard]] SensorsAtStart sensors_for(const Explanation& explanation, const MissionInput& input,
                                            const ExplainedRun& other);

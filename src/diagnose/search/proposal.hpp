@@ -34,6 +34,7 @@ struct Proposals {
   /// Stored if none is accepted; empty: nothing to store.
   std::function<void(State&)> reject = {};
   bool looks_again = false;  ///< then start again with the first move; otherwise the next move follows
+  bool is_noise = false;     ///< comes after mean effects in the order that takes those first
 };
 
 /// A move uses the results of a run and proposes explanations. It has no side effects.

@@ -21,10 +21,12 @@ State about_its_sensors(State state, Context& context) {
 
 Step step(const State& standing, Context& context) {
   Look look(standing, context);
-  for (const Move move : moves(standing.limits.order)) {
+  for (const Move move : moves()) {
     const Proposals proposals = move(look);
-    if (std::optional<State> next = first_accepted(proposals.tries, look.state(), context))
+    if (std::optional<State> next = first_accepted(proposals.tries, look.state(), context)) {
+      if (proposals.is_noise && context.orders_part && !look.candidates().empty()) context.orders_part(standing);
       return {about_its_sensors(*std::move(next), context), true};
+    }
     if (proposals.reject) look.note(proposals.reject);
     if (proposals.looks_again) return {look.left(), true};
   }

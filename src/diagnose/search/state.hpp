@@ -1,6 +1,7 @@
 #pragma once
 // State of a search: the accepted run, its reported findings, and what was rejected so far. A value; private to the room.
 
+#include <functional>
 #include <memory>
 #include <optional>
 #include <vector>
@@ -16,11 +17,15 @@ namespace coast::diagnose {
 /// and exceeds each of them; dozens of mean effects replace lasting noise. Evidence decides between the outcomes.
 enum class Order { kNoiseFirst, kMeansFirst };
 
+struct State;
+
 /// Constant throughout a diagnosis, except for the cached runs.
 struct Context {
   DiagnosisOptions options;
   std::optional<estimate::NoiseFitChoice> asked_for;  ///< noise that the run estimates
   Runs& runs;
+  /// Told the state in which noise is selected although a mean effect could be; may be empty.
+  std::function<void(const State&)> orders_part = {};
   /// Probability of a false alarm by the catalogue: the total minus random effects, lines and relations.
   [[nodiscard]] double false_alarm_of_catalogue() const;
 };

@@ -103,6 +103,12 @@ std::string told(const ConvertConfig& config, const record::Trajectory& trajecto
                      geo::to_string(trajectory.states.front().t), geo::to_string(trajectory.states.back().t));
 }
 
+std::vector<std::string> convert_format_names() {
+  std::vector<std::string> names;
+  for (const io::TrajectoryFormat& format : io::trajectory_formats()) names.emplace_back(format.name);
+  return names;
+}
+
 std::string convert_formats(const std::string& indent) {
   std::string text;
   for (const io::TrajectoryFormat& format : io::trajectory_formats())

@@ -80,6 +80,7 @@ Proposal selection_of(const Merged& first, const std::vector<FittedEffect>& fits
 }  // namespace
 
 Proposals add_random_effect(Look& look) {
+  if (look.takes_means_first()) return {};
   const std::optional<FittedNoise>& stated = look.stated_noise();
   const State& state = look.state();
   if (state.explanation.random.size() >= kMostRandom) return {};
@@ -99,11 +100,8 @@ Proposals add_random_effect(Look& look) {
   const Merged merge = merged(fit, state, look.context().runs);
   return {.tries = {selection_of(merge, rivals(merge, *first, suspected), p_value, state)},
           .reject = [fit](State& next) { next.excluded.random.push_back(fit.noise); },
-          .looks_again = true};
-}
-
-Proposals add_random_effect_last(Look& look) {
-  return look.candidates().empty() ? add_random_effect(look) : Proposals{};
+          .looks_again = true,
+          .is_noise = true};
 }
 
 }  // namespace coast::diagnose

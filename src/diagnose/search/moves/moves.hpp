@@ -1,7 +1,7 @@
 #pragma once
 // Every move of the search, one file each; private to the room.
 
-#include <vector>
+#include <span>
 
 #include "search/look.hpp"
 #include "search/proposal.hpp"
@@ -20,9 +20,6 @@ namespace coast::diagnose {
 [[nodiscard]] Proposals add_random_effect(Look& look);
 /// The stated noise, if innovations contradict it.
 [[nodiscard]] Proposals fit_stated_noise(Look& look);
-/// Both, if no mean effect is left.
-[[nodiscard]] Proposals add_random_effect_last(Look& look);
-[[nodiscard]] Proposals fit_stated_noise_last(Look& look);
 /// A line or a relation that is not in the catalogue.
 [[nodiscard]] Proposals add_form(Look& look);
 /// The likeliest mean effect of the catalogue.
@@ -33,6 +30,6 @@ namespace coast::diagnose {
 [[nodiscard]] Proposals refit_noise(Look& look);
 
 /// In the order of use. A new move is a file in search/moves and a line in moves.cpp.
-[[nodiscard]] std::vector<Move> moves(Order order);
+[[nodiscard]] std::span<const Move> moves();
 
 }  // namespace coast::diagnose
