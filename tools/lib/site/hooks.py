@@ -113,6 +113,7 @@ def rewritten(text, source, here):
 
 
 def on_page_markdown(markdown, page, config, files):
+    page.title = page.title.replace("`", "")
     return rewritten(markdown, place(page.file), page.file)
 
 
