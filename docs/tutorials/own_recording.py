@@ -149,5 +149,5 @@ assert np.median(both) < 0.5 * np.median(forward)
 print(*sorted(file.name for file in (folder / "results").iterdir() if not file.name.startswith(".")), sep="\n")
 
 # %% [markdown]
-# `run.resolved.yaml` has every value that was used. Next: [an outage study of your own IMU](outage_study.md), or what to do
+# `run.resolved.yaml` has every value that was used. Next: [an outage study of your own IMU](outage_study.py), or what to do
 # [when the verdict is not good](../first-recording.md#the-verdict).

@@ -31,9 +31,11 @@ def outside():
 
 
 def place(file):
-    """Where a file stands in the repository, as its links have it: the page of a tutorial where its source is."""
+    """What a file of the site is in the repository, where links are written: the page of a tutorial is its script."""
     path = pathlib.Path(file.abs_src_path)
-    return ROOT / "docs/tutorials" / path.name if path.is_relative_to(EXECUTED) else path
+    if not path.is_relative_to(EXECUTED):
+        return path
+    return ROOT / "docs/tutorials" / (f"{path.stem}.py" if path.suffix == ".md" else path.name)
 
 
 def site_file(source, path, config):
