@@ -96,7 +96,7 @@ def rewritten(text, source, here):
 
     def link(match):
         if match["target"] is None:
-            return match[0]  # code
+            return match[0].replace("\\|", "|") if match[0].startswith("`") else match[0]  # code, whose bars split no table here
         mark, words, target = match["mark"], match["words"], match["target"]
         other = target_of(source, target)
         if other is None:
