@@ -133,7 +133,7 @@ for axis, solution in zip(axes, ("forward", "smoothed")):
             axis.bar(place + 0.36 * n, end["e"][key], width=0.32, color=f"C{n}", label=label if place == 0 else None)
     axis.set_xticks([0.18, 1.18], [run["error_model"] for run in runs])
     axis.set(title=f"{solution}, east, end of the outage", ylabel="m")
-axes[0].legend()
+axes[1].legend(loc="upper left")
 
 # %% [markdown]
 # `study.page` is the report, with a figure of every outage. To study a recording of your own instead, write `run: run.yaml` in place of `scenario` and `seeds`: then

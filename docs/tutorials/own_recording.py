@@ -122,7 +122,7 @@ axes[0].tick_params(axis="x", rotation=30)
 axes[1].plot(seconds, 1000 * error, label="north, smoothed minus truth")
 axes[1].fill_between(seconds, -1960 * sd, 1960 * sd, alpha=0.2, label="95 % by the stated sigma")
 axes[1].set(xlabel="s since the start", ylabel="mm")
-axes[1].legend()
+axes[1].legend(loc="lower left")
 
 print(f"rms error north {1000 * np.sqrt(np.mean(error**2)):.1f} mm, stated {1000 * np.sqrt(np.mean(sd**2)):.1f} mm, inside 95 %: {inside:.2f}")
 assert inside > 0.85 and np.sqrt(np.mean(error**2)) < 0.01

@@ -12,6 +12,7 @@ from mkdocs.structure.files import File
 from pymdownx.slugs import slugify
 
 ROOT = pathlib.Path(__file__).resolve().parents[3]
+RUNS = ROOT / "reference_runs"
 EXECUTED = ROOT / "build/tutorials"
 CODE = r"^(?: {4}|\t)[^\n]*$|^```.*?^```|`[^`\n]*`"
 LINK = r"(?P<mark>!?)\[(?P<words>(?:[^\[\]]|\[[^\]]*\])*)\]\((?P<target>[^)\s]+)\)"
@@ -21,9 +22,8 @@ pages = {}  # file of the repository: its File of the site
 
 def outside():
     """Files of the site that do not lie in docs/, each with its path in the site."""
-    runs = ROOT / "reference_runs"
-    yield runs / "README.md", "reference_runs/index.md"
-    for readme in sorted(runs.glob("*/README.md")):
+    yield RUNS / "README.md", "reference_runs/index.md"
+    for readme in sorted(RUNS.glob("*/README.md")):
         yield readme, f"reference_runs/{readme.parent.name}.md"
     for file in sorted(EXECUTED.glob("*")):
         yield file, f"tutorials/{file.name}"
@@ -62,7 +62,7 @@ def on_files(files, config):
         for match in CODE_OR_LINK.finditer(text):
             other = target_of(place(page), match["target"] or "")
             if other and other.is_file() and other not in pages and other.is_relative_to(ROOT):
-                where = f"repository/{other.relative_to(ROOT)}{'' if other.suffix in ('.png', '.svg', '.json') else '.txt'}"
+                where = f"repository/{other.relative_to(ROOT)}{'' if other.suffix in ('.png', '.svg', '.json', '.txt') else '.txt'}"
                 pages[other] = site_file(other, where, config)
                 files.append(pages[other])
     return files
@@ -114,8 +114,14 @@ def rewritten(text, source, here):
     return CODE_OR_LINK.sub(link, text)
 
 
+def title_of(readme):
+    return readme.read_text(encoding="utf-8").split("\n")[0].lstrip("# ")
+
+
 def on_page_markdown(markdown, page, config, files):
     page.title = page.title.replace("`", "")
+    if page.file.src_path == "reference_runs/index.md":
+        markdown += "\n## The runs\n\n" + "".join(f"- [{title_of(readme)}]({readme.parent.name}/README.md)\n" for readme, _ in outside() if readme.parent.parent == RUNS)
     return rewritten(markdown, place(page.file), page.file)
 
 
