@@ -74,7 +74,7 @@ def expanded(nav):
 
     def step(item):
         if isinstance(item, dict):
-            return [{key: step(value) for key, value in item.items()}]
+            return [{key: step(value) if isinstance(value, list) else value for key, value in item.items()}]
         if isinstance(item, list):
             return [inner for one in item for inner in step(one)]
         if not item.endswith("/*"):
@@ -121,7 +121,8 @@ def title_of(readme):
 def on_page_markdown(markdown, page, config, files):
     page.title = page.title.replace("`", "")
     if page.file.src_path == "reference_runs/index.md":
-        markdown += "\n## The runs\n\n" + "".join(f"- [{title_of(readme)}]({readme.parent.name}/README.md)\n" for readme, _ in outside() if readme.parent.parent == RUNS)
+        runs = [file for file, _ in outside() if file.parent.parent == RUNS]
+        markdown += "\n## The runs\n\n" + "".join(f"- [{title_of(run)}]({run.parent.name}/README.md)\n" for run in runs)
     return rewritten(markdown, place(page.file), page.file)
 
 
