@@ -13,7 +13,8 @@ import coast
 import numpy as np
 from matplotlib import pyplot
 
-folder = pathlib.Path(tempfile.mkdtemp())
+work = tempfile.TemporaryDirectory()                        # removed at the end
+folder = pathlib.Path(work.name)
 drive = coast.simulate({
     "schema": "coast.scenario/1",
     "trajectory": {"kind": "city", "duration_s": 360, "static_s": 30, "origin_deg_m": [46.52, 6.57, 400]},

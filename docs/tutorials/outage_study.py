@@ -5,7 +5,7 @@
 # ([`coast calibrate`](../jobs/calibrate.md)); the model goes into a [scenario](../jobs/simulate.md); [`coast outage`](../jobs/outage.md) makes outages in
 # simulated drives, and compares the model with others.
 #
-# The record at rest is simulated, too: only so is it known what should come out.
+# The record at rest is simulated too, so that the right answer is known.
 
 # %%
 import pathlib
@@ -14,7 +14,8 @@ import tempfile
 import coast
 from matplotlib import pyplot
 
-folder = pathlib.Path(tempfile.mkdtemp())
+work = tempfile.TemporaryDirectory()                        # removed at the end
+folder = pathlib.Path(work.name)
 
 # %% [markdown]
 # ## A sensor, and what its data sheet says

@@ -1,8 +1,8 @@
 # %% [markdown]
 # # Your own recording, from Python
 #
-# You have an IMU log and a table of GNSS positions, in their own columns, units and axes. At the end stand a trajectory, a verdict, and the
-# page that shows both. Only the recording is simulated here, so that the result can be compared with the truth.
+# You have an IMU log and a table of GNSS positions, in their own columns, units and axes. The result is a trajectory, a verdict, and the
+# page that shows both. The recording is simulated here, so that the trajectory can be compared with the truth.
 #
 # `PYTHONPATH=build/release/python python3 docs/tutorials/own_recording.py` runs this page, from the folder of a clone.
 
@@ -14,7 +14,8 @@ import coast
 import numpy as np
 from matplotlib import pyplot
 
-folder = pathlib.Path(tempfile.mkdtemp())
+work = tempfile.TemporaryDirectory()                        # removed at the end
+folder = pathlib.Path(work.name)
 drive = coast.simulate({
     "schema": "coast.scenario/1",
     "trajectory": {"kind": "city", "duration_s": 400, "static_s": 30, "origin_deg_m": [46.52, 6.57, 400]},
