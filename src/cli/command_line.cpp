@@ -84,7 +84,8 @@ void add_calibrate(CLI::App& app, std::filesystem::path& input, CommonOptions& c
   calibrate
       ->add_option("input", input,
                    "an IMU file at rest (default CSV columns, KF-GINS, IMR), calibration.yaml, tumble.yaml, or study.yaml")
-      ->required()->type_name(kFile);
+      ->required()
+      ->type_name(kFile);
   calibrate->footer(fmt::format(
       "Examples:\n  coast calibrate imu.csv --out imu-model\n  coast calibrate calibration.yaml\n\n"
       "calibration.yaml (all keys: docs/reference/calibrate.md):\n{}\n\ntumble.yaml, one recording of rests in many "
@@ -128,7 +129,9 @@ void add_compare(CLI::App& app, std::filesystem::path& first, std::filesystem::p
   auto* compare = subcommand(app, "compare", "two trajectories: N, E, D and attitude differences, first minus second",
                              "coast compare results/trajectory.nav truth.nav", common);
   compare->add_option("first", first, ".nav, CSV or SBET")->required()->type_name(kFile);
-  compare->add_option("second", second, ".nav, CSV or SBET: the differences are taken at its epochs")->required()->type_name(kFile);
+  compare->add_option("second", second, ".nav, CSV or SBET: the differences are taken at its epochs")
+      ->required()
+      ->type_name(kFile);
   compare->add_option("--lever-arm", lever_arm, "from the first's point to the second's, forward right down, m")->expected(3);
   compare->callback([&first, &second, &lever_arm, &common] {
     cli::compare(first, second, Eigen::Vector3d(lever_arm[0], lever_arm[1], lever_arm[2]), common);
@@ -170,11 +173,12 @@ void add_diagnose(CLI::App& app, std::filesystem::path& input, DiagnoseOptions& 
       ->capture_default_str();
   diagnose->add_flag("--quick", choice.quick, "one search and no twins: a first answer in a fraction of the time")
       ->excludes("--twins");
-  diagnose->add_option("--simulation", choice.simulation,
-                       "your own simulation in place of the twins: a scenario, or the run.yaml of a simulated recording")
+  diagnose
+      ->add_option("--simulation", choice.simulation,
+                   "your own simulation in place of the twins: a scenario, or the run.yaml of a simulated recording")
       ->type_name(kFile);
   diagnose->callback([&] {
-    jobs::require_kind(input, "process");
+    jobs::require_kind(input, "diagnose");
     cli::diagnose(input, choice, common);
   });
 }
@@ -194,9 +198,9 @@ void require_subcommand(const CLI::App& app, const std::string& word) {
   if (std::ranges::find(names, word) != names.end()) return;
   const std::string near = jobs::nearest(word, names);
   throw InputError({"", 0,
-                           near.empty() ? fmt::format("{} is no subcommand, there are: {}", word, fmt::join(names, ", "))
-                                        : fmt::format("{} is no subcommand: did you mean {}?", word, near),
-                           "", ""});
+                    near.empty() ? fmt::format("{} is no subcommand, there are: {}", word, fmt::join(names, ", "))
+                                 : fmt::format("{} is no subcommand: did you mean {}?", word, near),
+                    "", ""});
 }
 
 }  // namespace

@@ -414,5 +414,30 @@ TEST(SensorStates, KeepTheLaterAxesWhereAProcessIsGone) {
   EXPECT_TRUE(((back - x).array() == 0.0 || back.array() == 0.0).all());
 }
 
+// A wandering bias explains a ramp nearly as well as a ramp does, and comes first; the other order goes on without it.
+TEST(Search, TellsWhereTheOrdersPart) {
+  MissionInput input = test::honest_mission(12);
+  for (record::ImuSample& sample : input.imu.samples)
+    sample.dtheta.y() += 3e-6 * (sample.t - input.imu.samples.front().t) * sample.dt;
+  input.setup.lever_arm_b.x() += 0.1;
+  Searching search(input);
+  std::optional<State> told;
+  search.context.orders_part = [&](const State& state) { told = state; };
+  const auto has_noise = [](const State& state) { return state.account.noise || !state.explanation.random.empty(); };
+  State standing = with_draws(begin(search.context), search.context);
+  Step next{standing, true};
+  while (next.goes_on && !told) {
+    standing = std::exchange(next.state, {});
+    next = step(standing, search.context);
+  }
+  ASSERT_TRUE(told);
+  EXPECT_EQ(told->run, standing.run);
+  EXPECT_TRUE(has_noise(next.state));
+  told->limits.order = Order::kMeansFirst;
+  const Step other = step(*told, search.context);
+  EXPECT_FALSE(has_noise(other.state));
+  EXPECT_EQ(other.state.account.findings.size(), told->account.findings.size() + 1);
+}
+
 }  // namespace
 }  // namespace coast

@@ -164,6 +164,8 @@ class BadInput(Recorded):
         for scenario in (ROOT / "configs/scenarios/car_roundabout.yaml", self.scenario):
             with self.assertRaisesRegex(coast.InputError, "coast simulate"):
                 coast.process(scenario)
+            with self.assertRaisesRegex(coast.InputError, "coast simulate"):
+                coast.diagnose(scenario)
 
     def test_names_the_key_of_a_dict(self):
         stated = self.run_dict()

@@ -85,7 +85,9 @@ std::string closing(const std::string& footer) {
 
 std::string see_also(const CLI::App& app) {
   std::string text;
-  const auto add = [&](const CLI::App& page) { text += (text.empty() ? ".BR " : " ,\n.BR ") + escaped(manual_name(page)) + " (1)"; };
+  const auto add = [&](const CLI::App& page) {
+    text += (text.empty() ? ".BR " : " ,\n.BR ") + escaped(manual_name(page)) + " (1)";
+  };
   if (app.get_parent() != nullptr) add(*app.get_parent());
   for (const CLI::App* one : subcommands(app)) add(*one);
   return text + "\n";
@@ -103,8 +105,9 @@ std::string manual_page(const CLI::App& app, const std::string& version) {
   std::ranges::transform(title, title.begin(), [](unsigned char c) { return std::toupper(c); });
   std::string description = app.get_description();
   if (is_program) description = description.substr(description.find(": ") + 2);
-  std::string page = fmt::format(".TH {} 1 \"\" \"coast {}\" \"User Commands\"\n.nh\n.ad l\n.SH NAME\n{} \\- {}\n.SH SYNOPSIS\n{}\n",
-                                 escaped(title), version, escaped(manual_name(app)), escaped(description), synopsis(app));
+  std::string page =
+      fmt::format(".TH {} 1 \"\" \"coast {}\" \"User Commands\"\n.nh\n.ad l\n.SH NAME\n{} \\- {}\n.SH SYNOPSIS\n{}\n",
+                  escaped(title), version, escaped(manual_name(app)), escaped(description), synopsis(app));
   if (is_program) {
     page += ".SH SUBCOMMANDS\n";
     for (const CLI::App* one : subcommands(app)) page += item(bold(one->get_name()), one->get_description());

@@ -51,7 +51,7 @@ bool may_have_lasted(const State& state, std::size_t index) {
 std::optional<State> with_lasting_effect(const State& state, std::size_t index, Context& context) {
   const SelectedEffect one = state.explanation.effects[index];
   const Hypothesis begins = state.run->hypotheses()[one.hypothesis];
-  State base = taken_out(state, index, context);
+  State base = taken_out(state, index, context.runs.about(explanation_without(state, index), state.run));
   make_room(base);
   base.excluded.exchanged.push_back(one.hypothesis);
   const auto is_lasting = [&](Eigen::Index hypothesis) {

@@ -24,9 +24,7 @@ class Look {
   /// No candidates and no forms if the maximum number of effects is selected.
   [[nodiscard]] Candidates& candidates();
   /// Noise comes after the mean effects that are left.
-  [[nodiscard]] bool takes_means_first() {
-    return state_.limits.order == Order::kMeansFirst && !candidates().empty();
-  }
+  [[nodiscard]] bool takes_means_first() { return state_.limits.order == Order::kMeansFirst && !candidates().empty(); }
   /// A line or a relation that is not in the catalogue, if chance does not explain it.
   [[nodiscard]] const std::optional<Form>& form();
   /// Its minimum gain; 0 if there is none.

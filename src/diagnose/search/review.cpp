@@ -3,8 +3,10 @@
 #include <algorithm>
 #include <utility>
 
+#include "coast/parallel.hpp"
 #include "search/selection.hpp"
 #include "search/sizes.hpp"
+#include "search/told.hpp"
 
 namespace coast::diagnose {
 
@@ -12,9 +14,50 @@ namespace {
 
 /// Result for one effect.
 struct Outcome {
-  enum class Kind { kStays, kSelectedAgain, kReplaced };
   State state;
-  Kind kind = Kind::kStays;
+  bool replaced = false;
+};
+
+bool has_name(const State& state, std::size_t index) {
+  return !state.explanation.is_suggested(*state.account.findings[index].hypothesis.effect);
+}
+
+/// A line is not reviewed: no effect of the catalogue explains one frequency.
+bool is_reviewed(const State& state, std::size_t index) {
+  return has_name(state, index) || !state.account.findings[index].hypothesis.effect->relation.empty();
+}
+
+/// Runs without one effect each. Most reviews leave the run as it is: the next one's is made at the same time.
+class RunsWithout {
+ public:
+  explicit RunsWithout(Runs& runs) : runs_(&runs) {}
+
+  /// @throws NumericalError  the filter fails
+  [[nodiscard]] RunPtr run(const State& state, std::size_t index) {
+    if (about_ != state.run || index < first_ || index - first_ >= made_.size()) make(state, index);
+    if (RunPtr made = made_[index - first_]) return made;
+    return runs_->about(explanation_without(state, index), state.run);  // fails again, and says why
+  }
+
+ private:
+  static constexpr std::size_t kAtATime = 2;  // whatever the threads are: so is the number of runs
+
+  void make(const State& state, std::size_t index) {
+    about_ = state.run;
+    first_ = index;
+    std::vector<Runs::Request> requests;
+    for (std::size_t i = index; i < std::min(index + kAtATime, state.explanation.effects.size()) && is_reviewed(state, i); ++i)
+      requests.push_back({explanation_without(state, i), state.run});
+    made_ = runs_->try_all(requests);
+    coast::parallel_for_each(made_, [](const RunPtr& run) {
+      if (run) static_cast<void>(run->scores());
+    });
+  }
+
+  Runs* runs_;
+  RunPtr about_;
+  std::size_t first_ = 0;
+  std::vector<RunPtr> made_;
 };
 
 /// A relation, compared with all effects of the catalogue, one of which replaces it if it explains as much.
@@ -28,11 +71,11 @@ Outcome relation_reviewed(const State& state, std::size_t index, State without, 
     if (std::optional<State> next = first_accepted(selections(best, without, candidates, context), without, context)) {
       const std::vector<EffectPtr>& suggested = state.explanation.suggested;
       next->excluded.forms.push_back(*std::ranges::find(suggested, finding.hypothesis.effect, &EffectPtr::get));
-      return {*std::move(next), Outcome::Kind::kReplaced};
+      return {*std::move(next), true};
     }
     without.excluded.rejected.push_back(best.hypothesis);
   }
-  Outcome outcome{state, Outcome::Kind::kStays};
+  Outcome outcome{state};
   outcome.state.excluded = without.excluded;
   return outcome;
 }
@@ -47,36 +90,53 @@ void inform(Suspicion& s, const SelectedEffect& effect, double gain) {
   s.likelihood_ratio = 2.0 * gain;
 }
 
-Outcome effect_reviewed(const State& state, std::size_t index, Context& context) {
+/// The state with an effect that is the likeliest still, as it is told among the others.
+State confirmed(State state, std::size_t index, const Suspicion& s, double gain, const State& without,
+                const Candidates& candidates) {
+  Finding& finding = state.account.findings[index];
+  const double sd = finding.sd;
+  finding = finding_of(s, without.run->hypotheses()[s.hypothesis], without, candidates);
+  finding.sd = sd;
+  finding.delta_log_likelihood = gain;
+  return state;
+}
+
+/// @param run  without the effect
+Outcome effect_reviewed(const State& state, std::size_t index, RunPtr run, Context& context) {
   const SelectedEffect effect = state.explanation.effects[index];
-  const Effect& kind = *state.account.findings[index].hypothesis.effect;
-  const bool has_name = !state.explanation.is_suggested(kind);
-  if (!has_name && kind.relation.empty()) return {state, Outcome::Kind::kStays};
-  State without = taken_out(state, index, context);
+  State without = taken_out(state, index, std::move(run));
   const double gain = state.run->log_likelihood() - without.run->log_likelihood();
-  if (!has_name) return relation_reviewed(state, index, std::move(without), gain, context);
+  if (!has_name(state, index)) return relation_reviewed(state, index, std::move(without), gain, context);
   Candidates candidates(without, context);
   candidates.add_selected(effect.hypothesis, gain);
-  if (candidates.empty()) return {std::move(without), Outcome::Kind::kReplaced};
+  if (candidates.empty()) return {std::move(without), true};
   Suspicion best = candidates.likeliest();
-  const bool is_same = best.hypothesis == effect.hypothesis;
-  if (is_same) inform(best, effect, gain);
+  if (best.hypothesis == effect.hypothesis) {
+    inform(best, effect, gain);
+    if (gain >= 0.5 * threshold(without, context)) return {confirmed(state, index, best, gain, without, candidates)};
+  }
   std::optional<State> next = first_accepted(selections(best, without, candidates, context), without, context);
-  if (next) return {*std::move(next), is_same ? Outcome::Kind::kSelectedAgain : Outcome::Kind::kReplaced};
+  if (next) return {*std::move(next), best.hypothesis != effect.hypothesis};
   without.excluded.rejected.push_back(best.hypothesis);
-  return {std::move(without), Outcome::Kind::kReplaced};
+  return {std::move(without), true};
 }
 
 }  // namespace
 
 Reviewed reviewed(State state, Context& context) {
   bool changed = false;
-  std::size_t next = 0;  // earlier effects stay; re-selected ones are appended after all others
+  RunsWithout without(context.runs);
+  std::size_t next = 0;  // effects that stay stay in their places; others are appended behind all of them
   for (std::size_t left = state.explanation.effects.size(); left > 0; --left) {
-    Outcome outcome = effect_reviewed(state, next, context);
+    if (!is_reviewed(state, next)) {
+      ++next;
+      continue;
+    }
+    const RunPtr standing = state.run;
+    Outcome outcome = effect_reviewed(state, next, without.run(state, next), context);
     state = std::move(outcome.state);
-    if (outcome.kind == Outcome::Kind::kStays) ++next;
-    if (outcome.kind != Outcome::Kind::kReplaced) continue;
+    if (state.run == standing) ++next;  // it stayed
+    if (!outcome.replaced) continue;
     changed = true;
     state = without_insignificant(with_settled_sizes(std::move(state), context), context);
     const std::size_t size = state.explanation.effects.size();

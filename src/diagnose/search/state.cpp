@@ -67,11 +67,11 @@ void erase_selection(State& state, std::size_t first) {
   state.relation.reset();
 }
 
-RunPtr run_without(const State& state, std::size_t first, Context& context) {
-  return context.runs.about(state.explanation.without(first, selected_together(state.account, first)), state.run);
-}
-
 }  // namespace
+
+Explanation explanation_without(const State& state, std::size_t first) {
+  return state.explanation.without(first, selected_together(state.account, first));
+}
 
 void note_deviations(State& state, const Movement& step) {
   for (std::size_t i = 0; i < state.account.findings.size(); ++i)
@@ -84,8 +84,8 @@ State with_run(State state, RunPtr run) {
   return state;
 }
 
-State taken_out(const State& state, std::size_t first, Context& context) {
-  State next = with_run(state, run_without(state, first, context));
+State taken_out(const State& state, std::size_t first, RunPtr run) {
+  State next = with_run(state, std::move(run));
   erase_selection(next, first);
   const Hypotheses& hypotheses = next.run->hypotheses();
   const LargestByChance chance = state.seen.suspicions.chance;
@@ -104,7 +104,7 @@ void note_given_up(State& next, std::size_t first, const SelectedEffect& effect)
 }
 
 State given_up(const State& state, std::size_t first, Context& context) {
-  State next = with_run(state, run_without(state, first, context));
+  State next = with_run(state, context.runs.about(explanation_without(state, first), state.run));
   note_given_up(next, first, state.explanation.effects[first]);
   return next;
 }

@@ -125,9 +125,11 @@ void for_each_selection(const Account& account, const Take& take) {
 void note_deviations(State& state, const Movement& step);
 /// The state after another run. Findings and exclusions are kept.
 [[nodiscard]] State with_run(State state, RunPtr run);
-/// Without the selection, from a run without it. Results of that run are in `seen`.
-/// @param first  of its coefficients
-[[nodiscard]] State taken_out(const State& state, std::size_t first, Context& context);
+/// The explanation without a selection. @param first  of its coefficients
+[[nodiscard]] Explanation explanation_without(const State& state, std::size_t first);
+/// Without the selection. Results of the run are in `seen`.
+/// @param run  of that explanation
+[[nodiscard]] State taken_out(const State& state, std::size_t first, RunPtr run);
 /// Removes the selection permanently.
 [[nodiscard]] State given_up(const State& state, std::size_t first, Context& context);
 /// @param next    with the run without it, not yet its findings

@@ -58,11 +58,12 @@ void require_kind(const std::filesystem::path& file, std::string_view command) {
 void require_kind(const config::Node& root, std::string_view command) {
   if (!root.is_map()) return;  // left to the reader of the file
   const ConfigurationFile* kind = kind_of(root);
-  const bool positions_of_a_run = kind != nullptr && command == "ppk" && kind->command == "process";
-  if (kind == nullptr || kind->command == command || positions_of_a_run) return;
+  const bool reads_runs = command == "ppk" || command == "diagnose";
+  if (kind == nullptr || kind->command == command || (reads_runs && kind->command == "process")) return;
+  const std::string_view own = command == "diagnose" ? "process" : command;
   throw root.error(fmt::format("this file is {} (`schema: {}1`)", kind->is, kind->schema),
                    fmt::format("a file for coast {} (`schema: {}1`)", command,
-                               std::ranges::find(kinds(), command, &ConfigurationFile::command)->schema),
+                               std::ranges::find(kinds(), own, &ConfigurationFile::command)->schema),
                    kind->command.empty()
                        ? "It is named in a run.yaml, as imu.error_model or imu.calibration."
                        : fmt::format("The subcommand for it is: coast {} {}", kind->command, root.file().string()));
