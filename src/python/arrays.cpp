@@ -2,6 +2,7 @@
 
 #include <pybind11/numpy.h>
 
+#include <algorithm>
 #include <cstdint>
 
 #include "coast/geo/earth.hpp"
@@ -49,6 +50,77 @@ py::object array_of(const std::vector<double>& values) {
 }
 
 }  // namespace
+
+py::dict state_arrays(const std::vector<record::NavState>& states) {
+  const std::size_t n = states.size();
+  Rows<std::int64_t> time(n);
+  Rows<double> latitude(n), longitude(n), height(n);
+  Rows3 r(n), v(n), velocity(n), attitude(n);
+  py::array_t<double> C({static_cast<py::ssize_t>(n), py::ssize_t{9}});
+  for (std::size_t i = 0; i < n; ++i) {
+    const record::NavState& state = states[i];
+    const geo::Geodetic p = geo::geodetic_from_ecef(state.r_eb_e);
+    const Eigen::Matrix3d C_e_n = geo::C_n_e(p).transpose();
+    const Eigen::Matrix<double, 3, 3, Eigen::RowMajor> C_b_e = state.q_b_e.toRotationMatrix();
+    const geo::Euler angles = geo::euler_from_dcm(C_e_n * C_b_e);
+    time(i, state.t.nanoseconds());
+    r(i, state.r_eb_e);
+    v(i, state.v_eb_e);
+    std::copy_n(C_b_e.data(), 9, C.mutable_data() + 9 * i);
+    latitude(i, p.latitude / geo::kDegree);
+    longitude(i, p.longitude / geo::kDegree);
+    height(i, p.height);
+    velocity(i, C_e_n * state.v_eb_e);
+    attitude(i, Eigen::Vector3d(angles.roll, angles.pitch, angles.yaw) / geo::kDegree);
+  }
+  py::dict arrays;
+  arrays["time_ns"] = time.array();
+  arrays["r_eb_e"] = r.array();
+  arrays["v_eb_e"] = v.array();
+  arrays["C_b_e"] = C;
+  arrays["latitude"] = latitude.array();
+  arrays["longitude"] = longitude.array();
+  arrays["height"] = height.array();
+  arrays["velocity_n"] = velocity.array();
+  arrays["attitude"] = attitude.array();
+  return arrays;
+}
+
+py::dict imu_arrays(const record::ImuRecording& imu) {
+  const std::size_t n = imu.samples.size();
+  Rows<std::int64_t> time(n);
+  Rows<double> dt(n);
+  Rows3 dtheta(n), dv(n);
+  for (std::size_t i = 0; i < n; ++i) {
+    const record::ImuSample& sample = imu.samples[i];
+    time(i, sample.t.nanoseconds());
+    dt(i, sample.dt);
+    dtheta(i, sample.dtheta);
+    dv(i, sample.dv);
+  }
+  py::dict arrays;
+  arrays["time_ns"] = time.array();
+  arrays["dt"] = dt.array();
+  arrays["dtheta"] = dtheta.array();
+  arrays["dv"] = dv.array();
+  return arrays;
+}
+
+py::dict fix_arrays(const record::GnssRecording& gnss) {
+  const std::size_t n = gnss.fixes.size();
+  Rows<std::int64_t> time(n);
+  Rows3 r(n), sd(n);
+  for (std::size_t i = 0; i < n; ++i) {
+    time(i, gnss.fixes[i].t.nanoseconds());
+    r(i, gnss.fixes[i].r_ea_e);
+    sd(i, sd_of(gnss.fixes[i].position_cov_n));
+  }
+  py::dict arrays;
+  arrays["time_ns"] = time.array();
+  arrays["r_ea_e"] = r.array();
+  arrays["sd_position_n"] = sd.array();
+  return arrays;
+}
 
 py::dict trajectory_arrays(const std::vector<record::TrajectoryEpoch>& epochs) {
   const std::size_t n = epochs.size();
@@ -113,7 +185,7 @@ py::dict innovation_arrays(const std::vector<estimate::InnovationRecord>& innova
   return arrays;
 }
 
-py::dict state_arrays(const std::vector<jobs::StateTrack>& states) {
+py::dict track_arrays(const std::vector<jobs::StateTrack>& states) {
   py::dict arrays;
   for (const jobs::StateTrack& state : states) {
     py::dict track;

@@ -72,7 +72,7 @@ fs::path folder_for(const Config& config, const Call& call) {
 
 /// @param job  of the configuration and Progress
 template <class Config, class Job>
-std::unique_ptr<Outcome> run(Config config, const Call& call, Job job) {
+auto run(Config config, const Call& call, Job job) {
   const fs::path folder = folder_for(config, call);
   auto result = in_background(call.listener, call.threads, [&](const jobs::Progress& progress) {
     auto done = job(config, progress);
@@ -146,8 +146,10 @@ std::unique_ptr<Outcome> outage(const py::object& what, const std::string& folde
              [&call](const auto& config, const auto& progress) { return jobs::outage(config, progress, call.out); });
 }
 
-std::unique_ptr<Outcome> simulate(const py::object& what, const std::string& folder, const Call& call,
-                                  std::optional<std::uint64_t> seed) {
+using Simulated = OutcomeOf<jobs::SimulationConfig, jobs::SimulationResult>;
+
+std::unique_ptr<Simulated> simulate(const py::object& what, const std::string& folder, const Call& call,
+                                    std::optional<std::uint64_t> seed) {
   return run(jobs::read_simulate(tree_from(what, folder, "simulate"), seed), call,
              [](const auto& config, const auto& progress) { return jobs::simulate(config, progress); });
 }
@@ -185,6 +187,10 @@ void register_results(py::module_& module) {
       .def_property_readonly("files", &Outcome::files)
       .def("write", &Outcome::write, py::arg("folder"), py::call_guard<py::gil_scoped_release>())
       .def("told", &Outcome::told, py::arg("folder"));
+  py::class_<Simulated, Outcome>(module, "Simulated")
+      .def("imu", [](const Simulated& s) { return imu_arrays(s.result.mission.imu); })
+      .def("gnss", [](const Simulated& s) { return fix_arrays(s.result.mission.gnss); })
+      .def("truth", [](const Simulated& s) { return state_arrays(s.result.mission.truth.states); });
   const auto of = [](auto member) { return [member](const Processed& p) { return member(p.mission.result); }; };
   py::class_<Processed, Outcome>(module, "Processed")
       .def_property_readonly("verdict", of([](const jobs::ProcessResult& r) { return jobs::name(r.verdict.standing()); }))
@@ -194,7 +200,7 @@ void register_results(py::module_& module) {
       .def("trajectory", [](const Processed& p) { return trajectory_arrays(p.mission.delivered); })
       .def("forward", [](const Processed& p) { return trajectory_arrays(p.mission.forward); })
       .def("innovations", of([](const jobs::ProcessResult& r) { return innovation_arrays(r.innovations); }))
-      .def("states", of([](const jobs::ProcessResult& r) { return state_arrays(r.states); }));
+      .def("states", of([](const jobs::ProcessResult& r) { return track_arrays(r.states); }));
 }
 
 }  // namespace

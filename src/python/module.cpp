@@ -2,6 +2,7 @@
 
 #include <pybind11/pybind11.h>
 
+#include "blocks.hpp"
 #include "errors.hpp"
 #include "jobs.hpp"
 
@@ -9,4 +10,6 @@ PYBIND11_MODULE(_coast, module) {
   module.attr("__version__") = COAST_VERSION;
   coast::python::register_errors();
   coast::python::register_jobs(module);
+  coast::python::register_blocks(module);
+  coast::python::register_carrier_blocks(module);
 }

@@ -82,10 +82,13 @@ class Builder {
 
 }  // namespace
 
+config::Node tree_from(const py::object& config, const std::string& folder) {
+  return py::isinstance<py::dict>(config) ? Builder(std::filesystem::path(folder) / "dict").build(config.cast<py::dict>())
+                                          : io::load_yaml(config.cast<std::filesystem::path>());
+}
+
 config::Node tree_from(const py::object& config, const std::string& folder, std::string_view command) {
-  config::Node root = py::isinstance<py::dict>(config)
-                          ? Builder(std::filesystem::path(folder) / "dict").build(config.cast<py::dict>())
-                          : io::load_yaml(config.cast<std::filesystem::path>());
+  config::Node root = tree_from(config, folder);
   jobs::require_kind(root, command);
   return root;
 }

@@ -7,13 +7,14 @@
 >>> result.trajectory.position_sd.max("time")
 """
 
+from . import blocks
 from ._coast import __version__
 from .errors import CoastError, InputError, NumericalError, OutputError, UnusableResult
 from .jobs import calibrate, compare, diagnose, inspect, outage, ppk, process, simulate, synth
-from .results import ProcessResult, Result
+from .results import ProcessResult, Result, SimulationResult
 from .tables import Table
 
 __all__ = [
-    "CoastError", "InputError", "NumericalError", "OutputError", "ProcessResult", "Result", "Table", "UnusableResult",
-    "__version__", "calibrate", "compare", "diagnose", "inspect", "outage", "ppk", "process", "simulate", "synth",
+    "CoastError", "InputError", "NumericalError", "OutputError", "ProcessResult", "Result", "SimulationResult", "Table", "UnusableResult",
+    "__version__", "blocks", "calibrate", "compare", "diagnose", "inspect", "outage", "ppk", "process", "simulate", "synth",
 ]

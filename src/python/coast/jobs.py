@@ -21,7 +21,7 @@ from collections.abc import Callable, Sequence
 from . import _coast
 from .errors import UnusableResult
 from .progress import listener
-from .results import ProcessResult, Result
+from .results import ProcessResult, Result, SimulationResult
 
 
 Configuration = str | os.PathLike | dict
@@ -97,9 +97,9 @@ def outage(config: Configuration, *, out: Path | None = None, folder: Path = "."
     return _run(Result, _coast.outage, (out, threads, progress), config, os.fspath(folder))
 
 
-def simulate(config: Configuration, *, seed: int | None = None, out: Path | None = None, folder: Path = ".", threads: int = 0, progress: Progress = None) -> Result:
+def simulate(config: Configuration, *, seed: int | None = None, out: Path | None = None, folder: Path = ".", threads: int = 0, progress: Progress = None) -> SimulationResult:
     """A trajectory and its sensors to a recording with its truth."""
-    return _run(Result, _coast.simulate, (out, threads, progress), config, os.fspath(folder), seed=seed)
+    return _run(SimulationResult, _coast.simulate, (out, threads, progress), config, os.fspath(folder), seed=seed)
 
 
 def compare(first: Path, second: Path, *, lever_arm: Sequence[float] = (0.0, 0.0, 0.0), out: Path | None = None, threads: int = 0, progress: Progress = None) -> Result:

@@ -16,6 +16,7 @@ if typing.TYPE_CHECKING:
 
 GPS_EPOCH = np.datetime64("1980-01-06T00:00:00", "ns")
 _AXES = ["north", "east", "down"]
+_ANGLES = ["roll", "pitch", "yaw"]
 
 
 class Result:
@@ -134,30 +135,87 @@ class ProcessResult(Result):
         return self.summary.get("outages", [])
 
 
+class SimulationResult(Result):
+    """A simulated recording with its truth.
+
+    Attributes:
+        imu:   xarray.Dataset, increments in the sensor's axes, each with the time at its end
+        gnss:  xarray.Dataset, positions of the antenna
+        truth: xarray.Dataset, states of the IMU at the start and at every IMU epoch: as coast.blocks.strapdown takes them, and in geographic terms
+    """
+
+    @functools.cached_property
+    def imu(self) -> xarray.Dataset:
+        a = self._outcome.imu()
+        return _dataset(
+            a,
+            {
+                "dt": ("time", a["dt"], {"units": "s", "long_name": "length of the interval"}),
+                "dtheta": (("time", "sensor_axis"), a["dtheta"], {"units": "rad", "long_name": "integral of the rotation rate"}),
+                "dv": (("time", "sensor_axis"), a["dv"], {"units": "m/s", "long_name": "integral of the specific force"}),
+            },
+            sensor_axis=["x", "y", "z"],
+        )
+
+    @functools.cached_property
+    def gnss(self) -> xarray.Dataset:
+        a = self._outcome.gnss()
+        return _dataset(
+            a,
+            {
+                "r_ea_e": (("time", "ecef"), a["r_ea_e"], {"units": "m", "long_name": "position of the antenna, Earth-centred, Earth-fixed"}),
+                "position_sd": (("time", "axis"), a["sd_position_n"], {"units": "m", "long_name": "standard deviation in north, east, down"}),
+            },
+            ecef=["x", "y", "z"],
+            axis=_AXES,
+        )
+
+    @functools.cached_property
+    def truth(self) -> xarray.Dataset:
+        a = self._outcome.truth()
+        return _dataset(
+            a,
+            {
+                "r_eb_e": (("time", "ecef"), a["r_eb_e"], {"units": "m", "long_name": "position, Earth-centred, Earth-fixed"}),
+                "v_eb_e": (("time", "ecef"), a["v_eb_e"], {"units": "m/s", "long_name": "velocity relative to the Earth"}),
+                "C_b_e": (("time", "ecef", "body"), a["C_b_e"].reshape(-1, 3, 3), {"long_name": "attitude: turns body axes into Earth axes"}),
+                **_geographic(a),
+            },
+            ecef=["x", "y", "z"],
+            body=["forward", "right", "down"],
+            axis=_AXES,
+            angle=_ANGLES,
+        )
+
+
+def _dataset(a, variables, **axes):
+    import xarray
+
+    return xarray.Dataset(variables, coords={"time": ("time", _times(a["time_ns"]), {"long_name": "GPS time (without leap seconds)"}), **axes})
+
+
 def _times(ns):
     return GPS_EPOCH + ns.astype("timedelta64[ns]")
 
 
+def _vector(a, key, units, name, axes="axis"):
+    return ("time", axes), a[key], {"units": units, "long_name": name}
+
+
+def _geographic(a):
+    return {
+        "latitude": ("time", a["latitude"], {"units": "degrees_north", "datum": "of the GNSS positions"}),
+        "longitude": ("time", a["longitude"], {"units": "degrees_east"}),
+        "height": ("time", a["height"], {"units": "m", "long_name": "above the ellipsoid"}),
+        "velocity": _vector(a, "velocity_n", "m/s", "velocity relative to the Earth, in north, east, down"),
+        "attitude": _vector(a, "attitude", "degree", "roll, pitch, yaw of the body (forward, right, down) against north, east, down", "angle"),
+    }
+
+
 def _trajectory(a):
-    import xarray
-
-    def vector(key, units, name, axes="axis"):
-        return ("time", axes), a[key], {"units": units, "long_name": name}
-
-    return xarray.Dataset(
-        {
-            "latitude": ("time", a["latitude"], {"units": "degrees_north", "datum": "of the GNSS positions"}),
-            "longitude": ("time", a["longitude"], {"units": "degrees_east"}),
-            "height": ("time", a["height"], {"units": "m", "long_name": "above the ellipsoid"}),
-            "velocity": vector("velocity_n", "m/s", "velocity relative to the Earth, in north, east, down"),
-            "attitude": vector("attitude", "degree", "roll, pitch, yaw of the body (forward, right, down) against north, east, down", "angle"),
-            "position_sd": vector("sd_position_n", "m", "standard deviation of the position"),
-            "velocity_sd": vector("sd_velocity_n", "m/s", "standard deviation of the velocity"),
-            "attitude_sd": vector("sd_attitude", "degree", "standard deviation of roll, pitch, yaw", "angle"),
-        },
-        coords={
-            "time": ("time", _times(a["time_ns"]), {"long_name": "GPS time (without leap seconds)"}),
-            "axis": _AXES,
-            "angle": ["roll", "pitch", "yaw"],
-        },
-    )
+    deviations = {
+        "position_sd": _vector(a, "sd_position_n", "m", "standard deviation of the position"),
+        "velocity_sd": _vector(a, "sd_velocity_n", "m/s", "standard deviation of the velocity"),
+        "attitude_sd": _vector(a, "sd_attitude", "degree", "standard deviation of roll, pitch, yaw", "angle"),
+    }
+    return _dataset(a, {**_geographic(a), **deviations}, axis=_AXES, angle=_ANGLES)

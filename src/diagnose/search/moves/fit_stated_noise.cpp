@@ -8,9 +8,9 @@ Proposals fit_stated_noise(Look& look) {
   if (!fitted || fitted->gain() <= look.form_gain() || !look.candidates().gain_is_exceeded_by(fitted->gain())) return {};
   Explanation explanation = look.state().explanation;
   explanation.noise = fitted->fit.adjustment;
-  return {.tries = {{.explanation = std::move(explanation), .about = look.state().run, .accept = [fitted](State& next, double) {
-                       next.account.noise = fitted;
-                     }}},
+  return {.tries = {{.explanation = std::move(explanation),
+                     .about = look.state().run,
+                     .accept = [fitted](State& next, double) { next.account.noise = fitted; }}},
           .is_noise = true};
 }
 
