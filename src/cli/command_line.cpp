@@ -167,6 +167,7 @@ void add_diagnose(CLI::App& app, std::filesystem::path& input, DiagnoseOptions& 
   auto* diagnose = subcommand(
       app, "diagnose", "errors that the configured model leaves out: which, how large, how certain, what modelling them gains",
       "coast diagnose run.yaml --out diagnosis\n\nKeys that differ from coast process: docs/reference/diagnose.md", common);
+  diagnose->get_option("--out")->description("folder for the results (default: the input's name with .diagnosis.out)");
   diagnose->add_option("run", input, "run.yaml, as for `coast process`")->required()->type_name(kFile);
   diagnose->add_option("--twins", choice.twins, "simulated twins that the recording is set against; 0: none")
       ->check(CLI::Range(0, 1000))
@@ -208,7 +209,11 @@ void require_subcommand(const CLI::App& app, const std::string& word) {
 CommandLine::CommandLine() : app_("coast: post-mission INS/GNSS trajectories", "coast") {
   app_.set_version_flag("--version", COAST_VERSION);
   app_.require_subcommand(1);
-  app_.footer("Exit status: 0 done, 2 bad input or configuration, 3 the numbers failed, 1 anything else.");
+  app_.footer(
+      "Exit status: 0 done, 2 bad input or configuration, 3 the numbers failed, 1 anything else.\n\n"
+      "A first page:\n"
+      "  coast simulate configs/scenarios/car_roundabout.yaml --out recording\n"
+      "  coast process recording/run.yaml --out results");
   add_process(app_, input_, common_);
   add_diagnose(app_, input_, diagnose_, common_);
   add_simulate(app_, input_, seed_, common_);

@@ -129,7 +129,10 @@ void diagnose(const std::filesystem::path& run_yaml, const DiagnoseOptions& choi
   config.quick = choice.quick;
   config.simulation = choice.simulation;
   jobs::Recordings recordings = jobs::load(config.run, progress);
-  const std::filesystem::path out = jobs::results_folder(run_yaml, options.out, jobs::files_of(config));
+  // By default not that of coast process, whose page would be replaced.
+  const std::filesystem::path own = std::filesystem::path(run_yaml).replace_extension(".diagnosis.out");
+  const std::filesystem::path out =
+      jobs::results_folder(run_yaml, options.out.empty() ? own : options.out, jobs::files_of(config));
   finish(config, jobs::diagnose(config, std::move(recordings), progress), out, line, options.quiet);
 }
 

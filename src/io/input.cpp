@@ -11,6 +11,7 @@
 #include <utility>
 
 #include "coast/io/results_folder.hpp"
+#include "coast/io/shipped.hpp"
 #include "coast/record/error.hpp"
 
 namespace coast::io {
@@ -33,7 +34,8 @@ void check_is_readable_file(const fs::path& path) {
   std::error_code error;
   const auto status = fs::status(path, error);
   if (status.type() == fs::file_type::not_found)
-    refuse(path.string(), "no such file", "", "Relative paths count from the folder of the file that contains them.");
+    refuse(path.string(), "no such file", "",
+           "Relative paths count from the folder of the file that names them, on a command line from the current one.");
   if (fs::is_directory(status)) refuse(path.string(), "is a directory", "a file", "");
   if (fs::is_regular_file(status) && fs::file_size(path, error) == 0) refuse(path.string(), "the file is empty", "", "");
 }
@@ -65,7 +67,10 @@ struct ByteSource::Handle {
   }
 };
 
-ByteSource::ByteSource(const fs::path& path) : handle_(std::make_unique<Handle>()), name_(path.string()) {
+ByteSource::ByteSource(const fs::path& stated) : handle_(std::make_unique<Handle>()) {
+  std::error_code failed;
+  const fs::path path = fs::exists(stated, failed) ? stated : shipped_file(stated).value_or(stated);
+  name_ = path.string();
   check_is_readable_file(path);
   handle_->file = gzopen(path.c_str(), "rb");
   if (handle_->file == nullptr) refuse(name_, fmt::format("cannot be opened: {}", std::strerror(errno)), "", "");

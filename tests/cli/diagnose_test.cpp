@@ -143,6 +143,17 @@ TEST(DiagnoseCommand, QuickFindsItWithoutTwinsAndSaysWhatIsLeftOut) {
   EXPECT_NE(both.error.find("--quick"), std::string::npos) << both.error;
 }
 
+TEST(DiagnoseCommand, LeavesThePageOfProcessAlone) {
+  const test::TemporaryDirectory folder;
+  for (const auto& entry : fs::directory_iterator(city_drive()))
+    if (entry.is_regular_file()) fs::copy(entry.path(), folder.path() / entry.path().filename());
+  EXPECT_EQ(run("process run.yaml", folder.path()).status, 0);
+  const std::string page = text_of(folder.path() / "run.out" / "report.html");
+  EXPECT_EQ(run("diagnose run.yaml --quick", folder.path()).status, 0);
+  EXPECT_EQ(text_of(folder.path() / "run.out" / "report.html"), page);
+  EXPECT_TRUE(fs::exists(folder.path() / "run.diagnosis.out" / "report.html"));
+}
+
 TEST(DiagnoseCommand, SaysWhatTheUsersOwnSimulationLacks) {
   const test::TemporaryDirectory folder;
   const fs::path scenario = city_drive().parent_path() / "scenario.yaml";

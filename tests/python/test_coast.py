@@ -160,6 +160,20 @@ class BadInput(Recorded):
         self.assertGreater(error.line, 0)
         self.assertIn("lever_arm_m", str(error))
 
+    def test_what_was_simulated_is_processed_without_files(self):
+        drive = coast.simulate(self.scenario, seed=5, folder=ROOT / "configs/scenarios")
+        result = coast.process({
+            "imu": {"file": coast.Table(drive.imu), "gps_week": drive.imu.gps_week, "values": "increments",
+                    "error_model": str(self.folder / "recording/error_model.yaml"), "lever_arm_m": [0.3, -0.2, -1.1],
+                    "columns": {"time": "sow", "gyro": ["dtheta_x", "dtheta_y", "dtheta_z"], "accel": ["dv_x", "dv_y", "dv_z"]}},
+            "gnss": {"file": coast.Table(drive.gnss), "gps_week": drive.gnss.gps_week, "frame": "ecef",
+                     "columns": {"time": "sow", "position": ["r_ea_e_x", "r_ea_e_y", "r_ea_e_z"],
+                                 "sd": ["position_sd_north", "position_sd_east", "position_sd_down"]}},
+        })
+        self.assertEqual(result.verdict, "good")
+        truth = drive.truth.sel(time=result.trajectory.time, method="nearest")
+        self.assertLess(float(np.abs(result.trajectory.height - truth.height.values).max()), 0.1)  # m: sigma 0.02 m at each fix
+
     def test_a_file_for_another_job_is_named(self):
         for scenario in (ROOT / "configs/scenarios/car_roundabout.yaml", self.scenario):
             with self.assertRaisesRegex(coast.InputError, "coast simulate"):

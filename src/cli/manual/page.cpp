@@ -119,6 +119,13 @@ std::string manual_page(const CLI::App& app, const std::string& version) {
   page += ".SH OPTIONS\n";
   for (const CLI::Option* one : options(app, false)) page += described(*one);
   page += fmt::format(".SH {}\n{}", is_program ? "EXIT STATUS" : "EXAMPLES", closing(app.get_footer()));
+  page +=
+      ".SH FILES\n" +
+      item(italic("/usr/share/coast/configs"),
+           "Error models, scenarios, studies and run files of the package. Named configs/.. they are found from any "
+           "folder that has none of that name.") +
+      item(italic("/usr/share/doc/coast-doc/html/index.html"),
+           "The documentation, where the package coast-doc is installed: every key, every file format, how to read the page.");
   return page + ".SH SEE ALSO\n" + see_also(app);
 }
 

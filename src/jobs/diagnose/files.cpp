@@ -34,8 +34,10 @@ void write(const DiagnosisConfig& config, const DiagnosisResult& result, const s
 }
 
 std::string told(const DiagnosisConfig&, const DiagnosisResult& result, const std::filesystem::path& folder) {
-  return fmt::format("{}the run with it: {}\nreport: {}\n", diagnosis_text(result), (folder / "run.diagnosed.yaml").string(),
-                     (folder / "report.html").string());
+  std::string text = diagnosis_text(result);
+  if (!changed_lines(result.diagnosis, kErrorModel).empty())
+    text += fmt::format("the run with it: {}\n", (folder / "run.diagnosed.yaml").string());
+  return text + fmt::format("report: {}\n", (folder / "report.html").string());
 }
 
 }  // namespace coast::jobs

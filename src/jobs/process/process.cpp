@@ -48,6 +48,19 @@ std::unique_ptr<study::PreparedMission> prepare(Recordings& recordings, const st
   }
 }
 
+/// An antenna elsewhere is known better from the run, which has found it in the whole recording and by several passes.
+void tell_found_antenna(const Work& work, const ProcessResult& result, std::vector<study::Cause>& causes) {
+  const auto is_found = [](const record::Event& event) { return event.kind == "lever_arm_contradicted"; };
+  if (std::ranges::none_of(result.events, is_found)) return;
+  const Eigen::Vector3d& l = work.mission.mission().lever_arm_b;
+  for (study::Cause& cause : causes) {
+    if (!cause.what.starts_with("the lever")) continue;
+    cause.what =
+        fmt::format("the lever arm, which is ({:.2f}, {:.2f}, {:.2f}) m in this recording, as was used", l.x(), l.y(), l.z());
+    cause.remedy = fmt::format("`imu: {{lever_arm_m: [{:.3f}, {:.3f}, {:.3f}]}}`", l.x(), l.y(), l.z());
+  }
+}
+
 void judge_result(const Work& work, Delivery& delivery, const study::Excerpt& excerpt, const study::Setup& stated,
                   ProcessResult& result) {
   doubt_lever_arm(work, result);
@@ -59,6 +72,7 @@ void judge_result(const Work& work, Delivery& delivery, const study::Excerpt& ex
   if (verdict.standing() == Standing::kGood || verdict.names_its_cause()) return;
   work.progress("looking for the cause", 0.0);
   verdict.causes = study::rank_causes(excerpt, stated);
+  tell_found_antenna(work, result, verdict.causes);
   if (const std::string cause = told(verdict.causes); !cause.empty()) verdict.likely_cause = cause;
   if (auto check = misreading_check(verdict.causes)) verdict.checks.push_back(std::move(*check));
 }
@@ -71,6 +85,7 @@ ProcessResult process(const RunConfig& config, Recordings recordings, const Traj
   leave_time_to_the_filter(config, recordings, setup);
   tell_inspection(recordings, progress);
   refuse_wrong_axes(config, recordings);
+  refuse_wrong_units(config, recordings);
   take_out_effects(config, recordings, setup, progress);
   const study::Excerpt excerpt = study::excerpt_of(recordings.imu, recordings.gnss);
 

@@ -132,7 +132,7 @@ void refuse_wrong_axes(const RunConfig& config, const Recordings& recordings) {
   for (const record::Event& event : recordings.inspection_events)
     if (event.kind == "gravity_sign" || event.kind == "gravity_axis" || (event.kind == "gyro_sign" && !config.tight))
       throw NumericalError("the axes contradict gravity or the course", "",
-                           event.text + " (`accept: true` processes it all the same)");
+                           event.text + " (`accept: true` goes on all the same)");
 }
 
 void refuse_wrong_units(const RunConfig& config, const Recordings& recordings) {
@@ -140,7 +140,7 @@ void refuse_wrong_units(const RunConfig& config, const Recordings& recordings) {
   for (const record::Event& event : recordings.inspection_events)
     if (event.kind == "gyro_unit" || event.kind == "specific_force_unit")
       throw NumericalError("the units contradict gravity or the course", "",
-                           event.text + " (`accept: true` searches all the same)");
+                           event.text + " (`accept: true` goes on all the same)");
 }
 
 void take_out_effects(const RunConfig& config, Recordings& recordings, study::Setup& setup, const Progress& progress) {

@@ -141,34 +141,39 @@ class SimulationResult(Result):
     Attributes:
         imu:   xarray.Dataset, increments in the sensor's axes, each with the time at its end
         gnss:  xarray.Dataset, positions of the antenna
+               of both, `sow` are seconds of the week in attrs["gps_week"], as a coast.Table of them has to have
         truth: xarray.Dataset, states of the IMU at the start and at every IMU epoch: as coast.blocks.strapdown takes them, and in geographic terms
     """
 
     @functools.cached_property
     def imu(self) -> xarray.Dataset:
         a = self._outcome.imu()
+        week, sow = _week_and_seconds(a["time_ns"])
         return _dataset(
             a,
             {
+                "sow": ("time", sow, {"units": "s", "long_name": "GPS seconds of the week in attrs"}),
                 "dt": ("time", a["dt"], {"units": "s", "long_name": "length of the interval"}),
                 "dtheta": (("time", "sensor_axis"), a["dtheta"], {"units": "rad", "long_name": "integral of the rotation rate"}),
                 "dv": (("time", "sensor_axis"), a["dv"], {"units": "m/s", "long_name": "integral of the specific force"}),
             },
             sensor_axis=["x", "y", "z"],
-        )
+        ).assign_attrs(gps_week=week)
 
     @functools.cached_property
     def gnss(self) -> xarray.Dataset:
         a = self._outcome.gnss()
+        week, sow = _week_and_seconds(a["time_ns"])
         return _dataset(
             a,
             {
+                "sow": ("time", sow, {"units": "s", "long_name": "GPS seconds of the week in attrs"}),
                 "r_ea_e": (("time", "ecef"), a["r_ea_e"], {"units": "m", "long_name": "position of the antenna, Earth-centred, Earth-fixed"}),
                 "position_sd": (("time", "axis"), a["sd_position_n"], {"units": "m", "long_name": "standard deviation in north, east, down"}),
             },
             ecef=["x", "y", "z"],
             axis=_AXES,
-        )
+        ).assign_attrs(gps_week=week)
 
     @functools.cached_property
     def truth(self) -> xarray.Dataset:
@@ -192,6 +197,12 @@ def _dataset(a, variables, **axes):
     import xarray
 
     return xarray.Dataset(variables, coords={"time": ("time", _times(a["time_ns"]), {"long_name": "GPS time (without leap seconds)"}), **axes})
+
+
+def _week_and_seconds(ns):
+    """GPS week of the first time, and seconds since its beginning."""
+    week = int(ns[0] // 604_800_000_000_000) if len(ns) else 0
+    return week, (ns - week * 604_800_000_000_000) / 1e9
 
 
 def _times(ns):

@@ -10,7 +10,8 @@ class Table:
 
     Without `columns` in the configuration they are named as in coast's own CSV files: time_s, gyro_x_radps .. accel_z_mps2
     of an IMU, time_s, lat_deg, lon_deg, height_m, sdn_m, sde_m, sdd_m of positions; units, axes and times are stated by the
-    same keys as those of a file. Values are copied once, as float64; columns of text or dates are left out.
+    same keys as those of a file. Values are copied once, as float64; columns of text or dates are left out. A
+    variable of two dimensions is a vector: `dtheta` over `sensor_axis` x, y, z is the columns dtheta_x, dtheta_y, dtheta_z.
     """
 
     coast_table = True
@@ -20,18 +21,27 @@ class Table:
         self.name = name
         self.columns = {}
         for key in _names(data):
-            column = np.asarray(data[key])
-            if column.dtype.kind not in "biuf":
+            values = np.asarray(data[key])
+            if values.dtype.kind not in "biuf":
                 continue
-            if column.ndim != 1:
-                raise ValueError(f"{name}: {key} has {column.ndim} dimensions, a column has one")
-            self.columns[str(key)] = np.ascontiguousarray(column, dtype=np.float64)
+            if values.ndim == 0 or values.ndim > 2:
+                raise ValueError(f"{name}: {key} has {values.ndim} dimensions, a column has one, columns of a vector two")
+            for column, part in zip(_columns(key, data[key]), values[:, None].T if values.ndim == 1 else values.T):
+                self.columns[column] = np.ascontiguousarray(part, dtype=np.float64)
 
     def __len__(self):
         return len(next(iter(self.columns.values()), ()))
 
     def __repr__(self):
         return f"<coast.Table {self.name!r}: {len(self)} rows of {', '.join(self.columns)}>"
+
+
+def _columns(key, values):
+    """Names of the columns of a variable: its own, or of a vector with the labels of its second dimension, else numbers from 0."""
+    if values.ndim == 1:
+        return [str(key)]
+    labels = values[values.dims[1]].values if hasattr(values, "dims") else range(values.shape[1])
+    return [f"{key}_{label}" for label in labels]
 
 
 def _names(data):

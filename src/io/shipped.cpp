@@ -1,0 +1,22 @@
+#include "coast/io/shipped.hpp"
+
+#include <algorithm>
+#include <system_error>
+
+namespace coast::io {
+
+namespace fs = std::filesystem;
+
+std::optional<fs::path> shipped_file(const fs::path& path) {
+  constexpr const char* kFolder = "configs";
+  std::error_code failed;
+  const fs::path program = fs::read_symlink("/proc/self/exe", failed);
+  const auto from = std::find(path.begin(), path.end(), kFolder);
+  if (failed || from == path.end()) return std::nullopt;
+  fs::path file = program.parent_path().parent_path() / "share" / "coast";
+  for (auto part = from; part != path.end(); ++part) file /= *part;
+  file = file.lexically_normal();
+  return fs::is_regular_file(file, failed) ? std::optional(file) : std::nullopt;
+}
+
+}  // namespace coast::io
