@@ -144,14 +144,14 @@ TEST(DiagnoseCommand, QuickFindsItWithoutTwinsAndSaysWhatIsLeftOut) {
 }
 
 TEST(DiagnoseCommand, LeavesThePageOfProcessAlone) {
-  const test::TemporaryDirectory folder;
-  for (const auto& entry : fs::directory_iterator(city_drive()))
-    if (entry.is_regular_file()) fs::copy(entry.path(), folder.path() / entry.path().filename());
-  EXPECT_EQ(run("process run.yaml", folder.path()).status, 0);
-  const std::string page = text_of(folder.path() / "run.out" / "report.html");
-  EXPECT_EQ(run("diagnose run.yaml --quick", folder.path()).status, 0);
-  EXPECT_EQ(text_of(folder.path() / "run.out" / "report.html"), page);
-  EXPECT_TRUE(fs::exists(folder.path() / "run.diagnosis.out" / "report.html"));
+  const fs::path folder = city_drive();
+  const Outcome processed = run(fmt::format("process '{}'", (folder / "run.yaml").string()), folder);
+  ASSERT_EQ(processed.status, 0) << processed.error;
+  const std::string page = text_of(folder / "run.out" / "report.html");
+  const Outcome diagnosed = run(fmt::format("diagnose '{}' --quick", (folder / "run.yaml").string()), folder);
+  ASSERT_EQ(diagnosed.status, 0) << diagnosed.error;
+  EXPECT_EQ(text_of(folder / "run.out" / "report.html"), page);
+  EXPECT_TRUE(fs::exists(folder / "run.diagnosis.out" / "report.html"));
 }
 
 TEST(DiagnoseCommand, SaysWhatTheUsersOwnSimulationLacks) {

@@ -70,8 +70,8 @@ void observe(const char* scenario_file) {
   const double error = (alone.front()->r_e - *base.approximate_r_e).norm();
   show("carrier::single_points", "m from the base", error, error < 20.0);
   const auto at_base = [&](geo::GpsTime) { return base.approximate_r_e; };
-  const auto differences = carrier::form_differences(rover, base, carrier::choose_signals(rover, base, options.systems), orbits,
-                                                     at_base, options);
+  const auto differences =
+      carrier::form_differences(rover, base, carrier::choose_signals(rover, base, options.systems), orbits, at_base, options);
   const auto satellites = static_cast<double>(differences.front().satellites.size());
   show("carrier::form_diff..", "satellites of both receivers", satellites, satellites > 5.0);
 }
@@ -94,7 +94,9 @@ void noise_of_a_record() {
 
   const noise::SumModel sum({&noise::estimable("white_noise")}, noise::Mean::kLevel);
   const noise::Likelihood likelihood({noise::StaticSignal::regular(record, kInterval)}, sum);
-  const auto at = [&](double density) { return likelihood.value({sum.terms().front().process->parameters().front().inverse(density)}); };
+  const auto at = [&](double density) {
+    return likelihood.value({sum.terms().front().process->parameters().front().inverse(density)});
+  };
   const double truth = kSd * kSd * kInterval;
   const double gain = at(truth).log_likelihood - at(1.1 * truth).log_likelihood;
   show("noise::Likelihood", "gain of the true density over 1.1 times it", gain, gain > 0.0);
