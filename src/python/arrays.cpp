@@ -109,9 +109,12 @@ py::dict imu_arrays(const record::ImuRecording& imu) {
 py::dict fix_arrays(const record::GnssRecording& gnss) {
   const std::size_t n = gnss.fixes.size();
   Rows<std::int64_t> time(n);
+  Rows<int> quality(n), satellites(n);
   Rows3 r(n), sd(n);
   for (std::size_t i = 0; i < n; ++i) {
     time(i, gnss.fixes[i].t.nanoseconds());
+    quality(i, static_cast<int>(gnss.fixes[i].quality));
+    satellites(i, gnss.fixes[i].satellites.value_or(0));
     r(i, gnss.fixes[i].r_ea_e);
     sd(i, sd_of(gnss.fixes[i].position_cov_n));
   }
@@ -119,6 +122,8 @@ py::dict fix_arrays(const record::GnssRecording& gnss) {
   arrays["time_ns"] = time.array();
   arrays["r_ea_e"] = r.array();
   arrays["sd_position_n"] = sd.array();
+  arrays["quality"] = quality.array();
+  arrays["satellites"] = satellites.array();
   return arrays;
 }
 

@@ -18,7 +18,7 @@ namespace coast::python {
 /// time_ns of the end of each interval, dt (s), dtheta (rad), dv (m/s).
 [[nodiscard]] pybind11::dict imu_arrays(const record::ImuRecording& imu);
 
-/// time_ns, r_ea_e (m), sd_position_n (m).
+/// time_ns, r_ea_e (m), sd_position_n (m), quality (as RTKLIB numbers it), satellites (0 where unknown).
 [[nodiscard]] pybind11::dict fix_arrays(const record::GnssRecording& gnss);
 
 /// time_ns, kind, used, dof, innovation and sd (n x 3), nis

@@ -136,7 +136,9 @@ std::unique_ptr<Outcome> synth(const py::object& what, const std::string& folder
              [](const auto& config, const auto& progress) { return jobs::synth(config, progress); });
 }
 
-std::unique_ptr<Outcome> ppk(const py::object& what, const std::string& folder, const Call& call) {
+using Solved = OutcomeOf<jobs::PpkConfig, jobs::PpkResult>;
+
+std::unique_ptr<Solved> ppk(const py::object& what, const std::string& folder, const Call& call) {
   return run(jobs::read_ppk(tree_from(what, folder, "ppk")), call,
              [](const auto& config, const auto& progress) { return jobs::ppk(config, progress); });
 }
@@ -191,6 +193,7 @@ void register_results(py::module_& module) {
       .def("imu", [](const Simulated& s) { return imu_arrays(s.result.mission.imu); })
       .def("gnss", [](const Simulated& s) { return fix_arrays(s.result.mission.gnss); })
       .def("truth", [](const Simulated& s) { return state_arrays(s.result.mission.truth.states); });
+  py::class_<Solved, Outcome>(module, "Solved").def("positions", [](const Solved& s) { return fix_arrays(s.result.fixes); });
   const auto of = [](auto member) { return [member](const Processed& p) { return member(p.mission.result); }; };
   py::class_<Processed, Outcome>(module, "Processed")
       .def_property_readonly("verdict", of([](const jobs::ProcessResult& r) { return jobs::name(r.verdict.standing()); }))

@@ -144,7 +144,7 @@ TEST(DiagnoseCommand, QuickFindsItWithoutTwinsAndSaysWhatIsLeftOut) {
 }
 
 TEST(DiagnoseCommand, LeavesThePageOfProcessAlone) {
-  const fs::path folder = city_drive();
+  const fs::path& folder = city_drive();
   const Outcome processed = run(fmt::format("process '{}'", (folder / "run.yaml").string()), folder);
   ASSERT_EQ(processed.status, 0) << processed.error;
   const std::string page = text_of(folder / "run.out" / "report.html");

@@ -105,6 +105,16 @@ class AgainstOthers(unittest.TestCase):
         error = found.r_e.values[ours] - truth[theirs]
         self.assertLess(np.sqrt(np.nanmean(np.sum(error**2, axis=1))), 5.0)  # m: codes of some decimetres, atmosphere by models
 
+    def test_carrier_phase_positions_are_as_written(self):
+        out = pathlib.Path(KEEP.name) / "solved"
+        positions = coast.ppk(recording() / "run-rinex.yaml", out=out).positions
+        rows = [line.split() for line in (out / "ppk.pos").read_text().splitlines() if not line.startswith("%")]
+        self.assertEqual(len(rows), positions.sizes["time"])
+        np.testing.assert_array_equal(positions.quality, [int(row[5]) for row in rows])
+        np.testing.assert_array_equal(positions.satellites, [int(row[6]) for row in rows])
+        np.testing.assert_allclose(positions.position_sd.sel(axis="north"), [float(row[7]) for row in rows], atol=6e-5)
+        self.assertGreater(float((positions.quality == 1).mean()), 0.5)
+
     def test_double_differences_of_two_bands_differ_by_ambiguities(self):
         base = [4365683.1024, 503817.0518, 4607565.0345]
         rows = blocks.double_differences(recording() / "rover.obs", recording() / "base.obs", recording() / "brdc.nav", base)

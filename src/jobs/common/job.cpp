@@ -24,7 +24,7 @@ std::filesystem::path default_folder(const std::filesystem::path& input) {
 
 std::filesystem::path results_folder(const std::filesystem::path& input, const std::filesystem::path& out,
                                      std::vector<std::string> files) {
-  const std::filesystem::path folder = out.empty() ? default_folder(input) : out;
+  std::filesystem::path folder = out.empty() ? default_folder(input) : out;
   std::error_code failed;
   std::filesystem::create_directories(folder, failed);
   if (failed || !std::filesystem::is_directory(folder))

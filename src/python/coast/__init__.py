@@ -11,10 +11,10 @@ from . import blocks
 from ._coast import __version__
 from .errors import CoastError, InputError, NumericalError, OutputError, UnusableResult
 from .jobs import calibrate, compare, diagnose, inspect, outage, ppk, process, simulate, synth
-from .results import ProcessResult, Result, SimulationResult
+from .results import PpkResult, ProcessResult, Result, SimulationResult
 from .tables import Table
 
 __all__ = [
-    "CoastError", "InputError", "NumericalError", "OutputError", "ProcessResult", "Result", "SimulationResult", "Table", "UnusableResult",
+    "CoastError", "InputError", "NumericalError", "OutputError", "PpkResult", "ProcessResult", "Result", "SimulationResult", "Table", "UnusableResult",
     "__version__", "blocks", "calibrate", "compare", "diagnose", "inspect", "outage", "ppk", "process", "simulate", "synth",
 ]

@@ -21,7 +21,7 @@ from collections.abc import Callable, Sequence
 from . import _coast
 from .errors import UnusableResult
 from .progress import listener
-from .results import ProcessResult, Result, SimulationResult
+from .results import PpkResult, ProcessResult, Result, SimulationResult
 
 
 Configuration = str | os.PathLike | dict
@@ -87,9 +87,9 @@ def synth(config: Configuration, *, out: Path | None = None, folder: Path = ".",
     return _run(Result, _coast.synth, (out, threads, progress), config, os.fspath(folder))
 
 
-def ppk(config: Configuration, *, out: Path | None = None, folder: Path = ".", threads: int = 0, progress: Progress = None) -> Result:
+def ppk(config: Configuration, *, out: Path | None = None, folder: Path = ".", threads: int = 0, progress: Progress = None) -> PpkResult:
     """RINEX of rover and base to carrier-phase positions."""
-    return _run(Result, _coast.ppk, (out, threads, progress), config, os.fspath(folder))
+    return _run(PpkResult, _coast.ppk, (out, threads, progress), config, os.fspath(folder))
 
 
 def outage(config: Configuration, *, out: Path | None = None, folder: Path = ".", threads: int = 0, progress: Progress = None) -> Result:

@@ -162,18 +162,7 @@ class SimulationResult(Result):
 
     @functools.cached_property
     def gnss(self) -> xarray.Dataset:
-        a = self._outcome.gnss()
-        week, sow = _week_and_seconds(a["time_ns"])
-        return _dataset(
-            a,
-            {
-                "sow": ("time", sow, {"units": "s", "long_name": "GPS seconds of the week in attrs"}),
-                "r_ea_e": (("time", "ecef"), a["r_ea_e"], {"units": "m", "long_name": "position of the antenna, Earth-centred, Earth-fixed"}),
-                "position_sd": (("time", "axis"), a["sd_position_n"], {"units": "m", "long_name": "standard deviation in north, east, down"}),
-            },
-            ecef=["x", "y", "z"],
-            axis=_AXES,
-        ).assign_attrs(gps_week=week)
+        return _fixes(self._outcome.gnss())
 
     @functools.cached_property
     def truth(self) -> xarray.Dataset:
@@ -197,6 +186,34 @@ def _dataset(a, variables, **axes):
     import xarray
 
     return xarray.Dataset(variables, coords={"time": ("time", _times(a["time_ns"]), {"long_name": "GPS time (without leap seconds)"}), **axes})
+
+
+class PpkResult(Result):
+    """Carrier-phase positions.
+
+    Attributes:
+        positions: xarray.Dataset, one row per solved epoch; quality 1 is fixed, 2 float, 5 single
+    """
+
+    @functools.cached_property
+    def positions(self) -> xarray.Dataset:
+        return _fixes(self._outcome.positions())
+
+
+def _fixes(a):
+    week, sow = _week_and_seconds(a["time_ns"])
+    return _dataset(
+        a,
+        {
+            "sow": ("time", sow, {"units": "s", "long_name": "GPS seconds of the week in attrs"}),
+            "r_ea_e": (("time", "ecef"), a["r_ea_e"], {"units": "m", "long_name": "position of the antenna, Earth-centred, Earth-fixed"}),
+            "position_sd": (("time", "axis"), a["sd_position_n"], {"units": "m", "long_name": "standard deviation in north, east, down"}),
+            "quality": ("time", a["quality"], {"long_name": "as RTKLIB numbers it"}),
+            "satellites": ("time", a["satellites"]),
+        },
+        ecef=["x", "y", "z"],
+        axis=_AXES,
+    ).assign_attrs(gps_week=week)
 
 
 def _week_and_seconds(ns):
