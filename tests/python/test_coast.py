@@ -198,7 +198,7 @@ class BadInput(Recorded):
     def test_refuses_tables_that_are_none(self):
         stated = self.run_dict()
         with self.assertRaisesRegex(ValueError, "dimensions"):
-            coast.Table({"time_s": [[1.0, 2.0]]})
+            coast.Table({"time_s": [[[1.0, 2.0]]]})
         for columns, told in (
             ({"time_s": np.empty(0)}, "no row"),
             ({"time_s": [1.0], "lat_deg": [1.0, 2.0]}, "equal lengths"),

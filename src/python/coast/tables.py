@@ -26,7 +26,7 @@ class Table:
                 continue
             if values.ndim == 0 or values.ndim > 2:
                 raise ValueError(f"{name}: {key} has {values.ndim} dimensions, a column has one, columns of a vector two")
-            for column, part in zip(_columns(key, data[key]), values[:, None].T if values.ndim == 1 else values.T):
+            for column, part in zip(_columns(key, data[key], values), np.atleast_2d(values.T)):
                 self.columns[column] = np.ascontiguousarray(part, dtype=np.float64)
 
     def __len__(self):
@@ -36,11 +36,11 @@ class Table:
         return f"<coast.Table {self.name!r}: {len(self)} rows of {', '.join(self.columns)}>"
 
 
-def _columns(key, values):
+def _columns(key, given, values):
     """Names of the columns of a variable: its own, or of a vector with the labels of its second dimension, else numbers from 0."""
     if values.ndim == 1:
         return [str(key)]
-    labels = values[values.dims[1]].values if hasattr(values, "dims") else range(values.shape[1])
+    labels = given[given.dims[1]].values if hasattr(given, "dims") else range(values.shape[1])
     return [f"{key}_{label}" for label in labels]
 
 
