@@ -7,6 +7,7 @@
 #include <tbb/parallel_pipeline.h>
 #include <tbb/task_group.h>
 
+#include <cstddef>
 #include <utility>
 
 // oneTBB's loops, each done whole or ended by an exception. Called as they are, a loop inside a task also ends, and silently,

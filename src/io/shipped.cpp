@@ -1,6 +1,5 @@
 #include "coast/io/shipped.hpp"
 
-#include <algorithm>
 #include <system_error>
 
 namespace coast::io {
@@ -11,7 +10,9 @@ std::optional<fs::path> shipped_file(const fs::path& path) {
   constexpr const char* kFolder = "configs";
   std::error_code failed;
   const fs::path program = fs::read_symlink("/proc/self/exe", failed);
-  const auto from = std::find(path.begin(), path.end(), kFolder);
+  auto from = path.end();
+  for (auto part = path.begin(); part != path.end(); ++part)
+    if (*part == kFolder) from = part;
   if (failed || from == path.end()) return std::nullopt;
   fs::path file = program.parent_path().parent_path() / "share" / "coast";
   for (auto part = from; part != path.end(); ++part) file /= *part;

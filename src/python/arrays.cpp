@@ -49,40 +49,58 @@ py::object array_of(const std::vector<double>& values) {
   return py::array_t<double>(static_cast<py::ssize_t>(values.size()), values.data());
 }
 
+/// Time, place, velocity and attitude of states in the terms of a map.
+class GeographicColumns {
+ public:
+  explicit GeographicColumns(std::size_t n) : time_(n), latitude_(n), longitude_(n), height_(n), velocity_(n), attitude_(n) {}
+  /// @return  its attitude
+  geo::Euler set(std::size_t i, const record::NavState& state) {
+    const geo::Geodetic p = geo::geodetic_from_ecef(state.r_eb_e);
+    const Eigen::Matrix3d C_e_n = geo::C_n_e(p).transpose();
+    const geo::Euler angles = geo::euler_from_dcm(C_e_n * state.q_b_e.toRotationMatrix());
+    time_(i, state.t.nanoseconds());
+    latitude_(i, p.latitude / geo::kDegree);
+    longitude_(i, p.longitude / geo::kDegree);
+    height_(i, p.height);
+    velocity_(i, C_e_n * state.v_eb_e);
+    attitude_(i, Eigen::Vector3d(angles.roll, angles.pitch, angles.yaw) / geo::kDegree);
+    return angles;
+  }
+  [[nodiscard]] py::dict arrays() const {
+    py::dict arrays;
+    arrays["time_ns"] = time_.array();
+    arrays["latitude"] = latitude_.array();
+    arrays["longitude"] = longitude_.array();
+    arrays["height"] = height_.array();
+    arrays["velocity_n"] = velocity_.array();
+    arrays["attitude"] = attitude_.array();
+    return arrays;
+  }
+
+ private:
+  Rows<std::int64_t> time_;
+  Rows<double> latitude_, longitude_, height_;
+  Rows3 velocity_, attitude_;
+};
+
 }  // namespace
 
 py::dict state_arrays(const std::vector<record::NavState>& states) {
   const std::size_t n = states.size();
-  Rows<std::int64_t> time(n);
-  Rows<double> latitude(n), longitude(n), height(n);
-  Rows3 r(n), v(n), velocity(n), attitude(n);
+  GeographicColumns geographic(n);
+  Rows3 r(n), v(n);
   py::array_t<double> C({static_cast<py::ssize_t>(n), py::ssize_t{9}});
   for (std::size_t i = 0; i < n; ++i) {
-    const record::NavState& state = states[i];
-    const geo::Geodetic p = geo::geodetic_from_ecef(state.r_eb_e);
-    const Eigen::Matrix3d C_e_n = geo::C_n_e(p).transpose();
-    const Eigen::Matrix<double, 3, 3, Eigen::RowMajor> C_b_e = state.q_b_e.toRotationMatrix();
-    const geo::Euler angles = geo::euler_from_dcm(C_e_n * C_b_e);
-    time(i, state.t.nanoseconds());
-    r(i, state.r_eb_e);
-    v(i, state.v_eb_e);
+    geographic.set(i, states[i]);
+    r(i, states[i].r_eb_e);
+    v(i, states[i].v_eb_e);
+    const Eigen::Matrix<double, 3, 3, Eigen::RowMajor> C_b_e = states[i].q_b_e.toRotationMatrix();
     std::copy_n(C_b_e.data(), 9, C.mutable_data() + 9 * i);
-    latitude(i, p.latitude / geo::kDegree);
-    longitude(i, p.longitude / geo::kDegree);
-    height(i, p.height);
-    velocity(i, C_e_n * state.v_eb_e);
-    attitude(i, Eigen::Vector3d(angles.roll, angles.pitch, angles.yaw) / geo::kDegree);
   }
-  py::dict arrays;
-  arrays["time_ns"] = time.array();
+  py::dict arrays = geographic.arrays();
   arrays["r_eb_e"] = r.array();
   arrays["v_eb_e"] = v.array();
   arrays["C_b_e"] = C;
-  arrays["latitude"] = latitude.array();
-  arrays["longitude"] = longitude.array();
-  arrays["height"] = height.array();
-  arrays["velocity_n"] = velocity.array();
-  arrays["attitude"] = attitude.array();
   return arrays;
 }
 
@@ -129,32 +147,16 @@ py::dict fix_arrays(const record::GnssRecording& gnss) {
 
 py::dict trajectory_arrays(const std::vector<record::TrajectoryEpoch>& epochs) {
   const std::size_t n = epochs.size();
-  Rows<std::int64_t> time(n);
-  Rows<double> latitude(n), longitude(n), height(n);
-  Rows3 velocity(n), attitude(n), sd_position(n), sd_velocity(n), sd_attitude(n);
+  GeographicColumns geographic(n);
+  Rows3 sd_position(n), sd_velocity(n), sd_attitude(n);
   for (std::size_t i = 0; i < n; ++i) {
     const record::TrajectoryEpoch& epoch = epochs[i];
-    const geo::Geodetic p = geo::geodetic_from_ecef(epoch.nav.r_eb_e);
-    const Eigen::Matrix3d C_e_n = geo::C_n_e(p).transpose();
-    const geo::Euler angles = geo::euler_from_dcm(C_e_n * epoch.nav.q_b_e.toRotationMatrix());
-    const Eigen::Matrix3d J = geo::euler_jacobian(angles);
-    time(i, epoch.nav.t.nanoseconds());
-    latitude(i, p.latitude / geo::kDegree);
-    longitude(i, p.longitude / geo::kDegree);
-    height(i, p.height);
-    velocity(i, C_e_n * epoch.nav.v_eb_e);
-    attitude(i, Eigen::Vector3d(angles.roll, angles.pitch, angles.yaw) / geo::kDegree);
+    const Eigen::Matrix3d J = geo::euler_jacobian(geographic.set(i, epoch.nav));
     sd_position(i, sd_of(epoch.cov.position));
     sd_velocity(i, sd_of(epoch.cov.velocity));
     sd_attitude(i, sd_of(J * epoch.cov.attitude * J.transpose()) / geo::kDegree);
   }
-  py::dict arrays;
-  arrays["time_ns"] = time.array();
-  arrays["latitude"] = latitude.array();
-  arrays["longitude"] = longitude.array();
-  arrays["height"] = height.array();
-  arrays["velocity_n"] = velocity.array();
-  arrays["attitude"] = attitude.array();
+  py::dict arrays = geographic.arrays();
   arrays["sd_position_n"] = sd_position.array();
   arrays["sd_velocity_n"] = sd_velocity.array();
   arrays["sd_attitude"] = sd_attitude.array();

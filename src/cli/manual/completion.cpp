@@ -26,11 +26,11 @@ std::vector<std::string> spellings_of(const CLI::App& app) {
 std::string bash_values(const CLI::App& command) {
   std::string branches;
   for (const CLI::Option* one : options(command, false)) {
-    if (!takes_value(*one) || placeholder(*one) == "FILE") continue;
+    if (!takes_value(*one) || value_name(*one) == "FILE") continue;
     std::string offered = "return";
     if (const std::vector<std::string> all = choices(*one); !all.empty())
       offered = fmt::format("mapfile -t COMPREPLY < <(compgen -W '{}' -- \"$word\")\n      return", fmt::join(all, " "));
-    if (placeholder(*one) == "FOLDER") offered = "mapfile -t COMPREPLY < <(compgen -d -- \"$word\")\n      return";
+    if (value_name(*one) == "FOLDER") offered = "mapfile -t COMPREPLY < <(compgen -d -- \"$word\")\n      return";
     for (const std::string& name : spellings(*one))
       branches += fmt::format("    {},{})\n      {}\n      ;;\n", command.get_name(), name, offered);
   }
@@ -54,7 +54,7 @@ std::string quoted(const std::string& text) {
 std::string zsh_value(const CLI::Option& option, const std::string& told) {
   if (const std::vector<std::string> all = choices(option); !all.empty())
     return fmt::format(":{}:({})", told, fmt::join(all, " "));
-  const std::string type = placeholder(option);
+  const std::string type = value_name(option);
   return fmt::format(":{}:{}", told, type == "FOLDER" ? "_files -/" : type == "FILE" ? "_files" : "");
 }
 
@@ -63,7 +63,7 @@ std::string zsh_option(const CLI::Option& option) {
   for (const std::string& name : spellings(option)) {
     std::string value;
     for (int i = 0; takes_value(option) && i < option.get_items_expected_max(); ++i)
-      value += zsh_value(option, quoted(placeholder(option)));
+      value += zsh_value(option, quoted(value_name(option)));
     lines += fmt::format("        '{}[{}]{}' \\\n", name, quoted(option.get_description()), value);
   }
   return lines;

@@ -11,13 +11,13 @@ std::vector<std::string> spellings(const CLI::Option& option) {
   return all;
 }
 
-std::string placeholder(const CLI::Option& option) {
+std::string value_name(const CLI::Option& option) {
   const std::string type = option.get_type_name();
   return type.substr(0, type.find(':'));
 }
 
 std::vector<std::string> choices(const CLI::Option& option) {
-  const std::string type = placeholder(option);
+  const std::string type = value_name(option);
   if (type.find('|') == std::string::npos) return {};
   std::vector<std::string> all;
   std::istringstream words(type);

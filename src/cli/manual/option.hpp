@@ -25,7 +25,7 @@ namespace coast::cli {
 [[nodiscard]] std::vector<std::string> spellings(const CLI::Option& option);
 
 /// What stands for its value: FILE, FOLDER, INT; without the limits that the parser adds.
-[[nodiscard]] std::string placeholder(const CLI::Option& option);
+[[nodiscard]] std::string value_name(const CLI::Option& option);
 
 /// Values that are a choice: `a|b|c`; empty if it is none.
 [[nodiscard]] std::vector<std::string> choices(const CLI::Option& option);

@@ -58,7 +58,7 @@ std::string item(const std::string& tag, const std::string& text) {
 std::string described(const CLI::Option& option) {
   std::string tag;
   for (const std::string& name : spellings(option)) tag += (tag.empty() ? "" : ", ") + bold(name);
-  if (takes_value(option)) tag += " " + italic(placeholder(option));
+  if (takes_value(option)) tag += " " + italic(value_name(option));
   std::string text = option.get_description();
   if (const std::string limits = option.get_type_name(); limits.find(" in ") != std::string::npos)
     text += "; " + limits.substr(limits.find(" in ") + 1);
@@ -121,10 +121,11 @@ std::string manual_page(const CLI::App& app, const std::string& version) {
   page += fmt::format(".SH {}\n{}", is_program ? "EXIT STATUS" : "EXAMPLES", closing(app.get_footer()));
   page +=
       ".SH FILES\n" +
-      item(italic("/usr/share/coast/configs"),
-           "Error models, scenarios, studies and run files of the package. Named configs/.. they are found from any "
+      item(italic("PREFIX/share/coast/configs"),
+           "Error models, scenarios, studies and run files; PREFIX is /usr where coast was installed as a Debian package. "
+           "Named configs/.. they are found from any "
            "folder that has none of that name.") +
-      item(italic("/usr/share/doc/coast-doc/html/index.html"),
+      item(italic("PREFIX/share/doc/coast-doc/html/index.html"),
            "The documentation, where the package coast-doc is installed: every key, every file format, how to read the page.");
   return page + ".SH SEE ALSO\n" + see_also(app);
 }

@@ -17,13 +17,18 @@ namespace {
 struct ConfigurationFile {
   std::string_view schema;
   std::string_view is;
-  std::string_view command;            // that reads it; empty: none
-  std::vector<std::string_view> keys;  ///< at its root, only in this kind; for files without schema
+  std::string_view command;                 ///< whose file it is; empty: none
+  std::vector<std::string_view> keys;       ///< at its root, only in this kind; for files without schema
+  std::vector<std::string_view> also = {};  ///< commands that read it too
+
+  [[nodiscard]] bool is_read_by(std::string_view other) const {
+    return command == other || std::ranges::find(also, other) != also.end();
+  }
 };
 
 const std::vector<ConfigurationFile>& kinds() {
   static const std::vector<ConfigurationFile> all{
-      {"coast.run/", "a run", "process", {"imu", "gnss"}},
+      {"coast.run/", "a run", "process", {"imu", "gnss"}, {"diagnose", "ppk"}},
       {"coast.scenario/", "a scenario", "simulate", {"trajectory"}},
       {"coast.study/", "a study of outages", "outage", {"sweep"}},
       {"coast.calibration_run/", "a calibration", "calibrate", {"records"}},
@@ -58,12 +63,12 @@ void require_kind(const std::filesystem::path& file, std::string_view command) {
 void require_kind(const config::Node& root, std::string_view command) {
   if (!root.is_map()) return;  // left to the reader of the file
   const ConfigurationFile* kind = kind_of(root);
-  const bool reads_runs = command == "ppk" || command == "diagnose";
-  if (kind == nullptr || kind->command == command || (reads_runs && kind->command == "process")) return;
-  const std::string_view own = command == "diagnose" ? "process" : command;
+  if (kind == nullptr || kind->is_read_by(command)) return;
+  auto own = std::ranges::find(kinds(), command, &ConfigurationFile::command);
+  if (own == kinds().end())
+    own = std::ranges::find_if(kinds(), [&](const ConfigurationFile& one) { return one.is_read_by(command); });
   throw root.error(fmt::format("this file is {} (`schema: {}1`)", kind->is, kind->schema),
-                   fmt::format("a file for coast {} (`schema: {}1`)", command,
-                               std::ranges::find(kinds(), own, &ConfigurationFile::command)->schema),
+                   fmt::format("a file for coast {} (`schema: {}1`)", command, own->schema),
                    kind->command.empty()
                        ? "It is named in a run.yaml, as imu.error_model or imu.calibration."
                        : fmt::format("The subcommand for it is: coast {} {}", kind->command, root.file().string()));
