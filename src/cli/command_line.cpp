@@ -140,8 +140,8 @@ void add_compare(CLI::App& app, std::filesystem::path& first, std::filesystem::p
 
 void add_convert(CLI::App& app, std::filesystem::path& input, std::filesystem::path& output, ConvertOptions& choice,
                  CommonOptions& common) {
-  auto* convert = app.add_subcommand("convert", "a trajectory in another format");
-  convert->add_option("trajectory", input, ".nav, CSV or SBET")->required()->type_name(kFile);
+  auto* convert = app.add_subcommand("convert", "a trajectory, or a receiver's own file, in another format");
+  convert->add_option("input", input, "a trajectory, or any recording that coast reads")->required()->type_name(kFile);
   convert->add_option("output", output, "the file to write; its extension names the format")->required()->type_name(kFile);
   convert->add_option("--to", choice.format, "format, where the extension is another")
       ->type_name(fmt::format("{}", fmt::join(jobs::convert_format_names(), "|")));
@@ -150,8 +150,10 @@ void add_convert(CLI::App& app, std::filesystem::path& input, std::filesystem::p
   convert->add_option("--geoid-height", choice.geoid_height_m, "geoid above the ellipsoid, m, for heights above mean sea level")
       ->check(CLI::Range(-120.0, 120.0));
   convert->add_flag("--quiet", common.quiet, "only warnings and errors");
-  convert->footer("Example:\n  coast convert results/trajectory.nav trajectory.gpx --rate 1\n\nFormats:\n" +
-                  jobs::convert_formats("  "));
+  convert->footer(
+      "Examples:\n  coast convert results/trajectory.nav trajectory.gpx --rate 1\n  coast convert rover.ubx "
+      "rover.obs\n\nFormats:\n" +
+      jobs::convert_formats("  "));
   convert->callback([&] { cli::convert(input, output, choice, common); });
 }
 

@@ -113,8 +113,8 @@ FileContents read_contents(const std::filesystem::path& file, std::optional<int>
   constexpr int kAnyWeek = 2300;
   ContentsReader with_a_week(file, kAnyWeek);
   if (with_a_week.read())
-    throw InputError({file.string(), 0, "seconds of week without a GPS week", "the week as well",
-                      "`coast inspect --gps-week 2374 FILE` states it."});
+    throw InputError(
+        {file.string(), 0, "seconds of week without a GPS week", "the week as well", "`--gps-week 2374` states it."});
   with_a_week.refuse();
 }
 

@@ -7,18 +7,11 @@
 #include "coast/geo/photogrammetry.hpp"
 #include "coast/geo/units.hpp"
 #include "state_columns.hpp"
+#include "text.hpp"
 
 namespace coast::io {
 
 namespace {
-
-/// A field of a CSV file; quoted where it needs it.
-std::string csv_field(const std::string& text) {
-  if (text.find_first_of(",;\"\n") == std::string::npos) return text;
-  std::string quoted = "\"";
-  for (const char c : text) quoted += c == '"' ? std::string("\"\"") : std::string(1, c);
-  return quoted + '"';
-}
 
 class EventFile {
  public:

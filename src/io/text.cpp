@@ -45,4 +45,11 @@ std::string excerpt(std::string_view s, std::size_t length) {
   return text;
 }
 
+std::string csv_field(const std::string& text) {
+  if (text.find_first_of(",;\"\n") == std::string::npos) return text;
+  std::string quoted = "\"";
+  for (const char c : text) quoted += c == '"' ? std::string("\"\"") : std::string(1, c);
+  return quoted + '"';
+}
+
 }  // namespace coast::io

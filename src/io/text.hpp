@@ -34,4 +34,7 @@ void split(std::string_view line, char delimiter, std::vector<std::string_view>&
 /// Shortened for messages, control characters shown as '?'.
 [[nodiscard]] std::string excerpt(std::string_view s, std::size_t length = 40);
 
+/// A field of a CSV file; quoted where it needs it.
+[[nodiscard]] std::string csv_field(const std::string& text);
+
 }  // namespace coast::io

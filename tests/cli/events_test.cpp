@@ -12,7 +12,9 @@
 #include "coast/geo/rotation.hpp"
 #include "coast/geo/units.hpp"
 #include "coast/io/reference.hpp"
+#include "coast/io/rinex.hpp"
 #include "coast/study/interpolation.hpp"
+#include "io/ubx_messages.hpp"
 #include "program.hpp"
 #include "support/schema.hpp"
 #include "support/support.hpp"
@@ -198,6 +200,27 @@ TEST(Convert, EveryFormatFromATrajectoryAndBack) {
   EXPECT_EQ(convert(truth + " " + to("slow.nav") + " --rate 1").status, 0);
   const record::Trajectory slow = trajectory_of(folder.path() / "slow.nav"), all = trajectory_of(drive() / "truth.nav");
   EXPECT_NEAR(static_cast<double>(slow.states.size()), all.states.back().t - all.states.front().t, 1.5);
+}
+
+TEST(Convert, WritesWhatAReceiverRecorded) {
+  const test::TemporaryDirectory folder;
+  std::string log;
+  for (unsigned i = 0; i < 5; ++i) log += test::rawx(2244, 36'000.0 + i, {{.sv = 5, .phase = 110'000'000.25 + i}});
+  write(folder.path() / "rover.ubx", log);
+  const auto convert = [&](const char* name, const char* options = "") {
+    const std::string place = folder.path().string();
+    return run(fmt::format("convert '{}/rover.ubx' '{}/{}' {}", place, place, name, options), folder.path());
+  };
+  const Outcome outcome = convert("out.obs");
+  EXPECT_EQ(outcome.status, 0) << outcome.error;
+  EXPECT_NE(text_of(folder.path() / "stdout.txt").find("out.obs: observations\n"), std::string::npos);
+  EXPECT_EQ(io::read_observations(folder.path() / "out.obs").epochs.size(), 5U);
+  EXPECT_EQ(convert("again", "--to rinex").status, 0);
+  EXPECT_EQ(text_of(folder.path() / "again.obs"), text_of(folder.path() / "out.obs"));
+  const Outcome refused = convert("out.pos");
+  EXPECT_EQ(refused.status, 2);
+  EXPECT_NE(refused.error.find("observations, nothing that pos files contain, expected --to rinex"), std::string::npos)
+      << refused.error;
 }
 
 TEST(Convert, SaysWhatItCannotDo) {

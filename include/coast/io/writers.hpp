@@ -16,6 +16,7 @@
 #include "coast/record/error.hpp"
 #include "coast/record/gnss.hpp"
 #include "coast/record/imu.hpp"
+#include "coast/record/time_mark.hpp"
 #include "coast/record/trajectory.hpp"
 
 namespace coast::io {
@@ -91,8 +92,16 @@ struct TrajectoryFormat {
 /// GNSS fixes as RTKLIB `.pos` with signed-root covariances; reads back to the printed digits (1e-9 deg, 1e-4 m, 1e-5 m of sd;
 /// if a sd is below 1e-4 m, enough digits to give it four, down to a nanometre).
 void write_gnss_pos(const std::filesystem::path& path, const record::GnssRecording& gnss);
+/// Whether the times of a table have their GPS week beside them: gps_week and sow_s in place of time_s.
+enum class WeekColumn { kWithout, kWith };
 /// IMU as CSV with the default header: mean rates over each interval.
-void write_imu_csv(const std::filesystem::path& path, const record::ImuRecording& imu);
+void write_imu_csv(const std::filesystem::path& path, const record::ImuRecording& imu, WeekColumn week = WeekColumn::kWithout);
+/// GNSS fixes as CSV with the default header, times with their week; velocities and numbers of satellites if every fix
+/// has them. Correlations between
+/// components are left out.
+void write_gnss_csv(const std::filesystem::path& path, const record::GnssRecording& gnss);
+/// Time marks as CSV: gps_week, sow_s, sd_s (empty: not stated), channel, edge, count, id.
+void write_time_marks_csv(const std::filesystem::path& path, const record::TimeMarkRecording& marks);
 /// First component of an aiding sensor's samples as CSV: gps_week, sow_s and a column of that name.
 void write_aid_csv(const std::filesystem::path& path, const record::AidRecording& aid, std::string_view column);
 

@@ -1,22 +1,22 @@
 #pragma once
-// A trajectory in another format.
+// A trajectory, or what a receiver recorded, in another format.
 
 #include <filesystem>
 #include <optional>
 #include <string>
 #include <vector>
 
+#include "coast/io/contents.hpp"
 #include "coast/jobs/job.hpp"
-#include "coast/record/trajectory.hpp"
 
 namespace coast::jobs {
 
 struct ConvertConfig {
-  std::filesystem::path input;  ///< .nav, CSV or SBET
+  std::filesystem::path input;  ///< any file of one kind, or of messages, that coast reads
   std::filesystem::path output;
-  std::string format;                    ///< one of io::trajectory_formats()
+  std::string format;                    ///< one of io::trajectory_formats() or io::recording_formats()
   std::optional<int> gps_week;           ///< of files with seconds of week only
-  std::optional<double> rate_hz;         ///< absent: every epoch
+  std::optional<double> rate_hz;         ///< of trajectories; absent: every epoch
   std::optional<double> geoid_height_m;  ///< geoid above the ellipsoid, for formats with heights above mean sea level
 };
 
@@ -25,14 +25,15 @@ struct ConvertConfig {
 [[nodiscard]] ConvertConfig read_convert(const std::filesystem::path& input, const std::filesystem::path& output,
                                          const std::string& format);
 
-/// @throws InputError  the file cannot be read, or lacks what the format contains: velocity, attitude, standard deviations
-[[nodiscard]] record::Trajectory convert(const ConvertConfig& config, const Progress& progress);
+/// @throws InputError  the file cannot be read, or has nothing that the format can hold
+[[nodiscard]] io::FileContents convert(const ConvertConfig& config, const Progress& progress);
 
+/// All files that the format can consist of.
 [[nodiscard]] std::vector<std::string> files_of(const ConvertConfig& config);
-/// Standard deviations and GNSS quality are not among what is read of a trajectory, and are left out; rates and accelerations
-/// of SBET are differences of the states.
-void write(const ConvertConfig& config, const record::Trajectory& trajectory, const std::filesystem::path& folder);
-[[nodiscard]] std::string told(const ConvertConfig& config, const record::Trajectory& trajectory,
+/// Writes those for which the input has something. Of trajectories, standard deviations and GNSS quality are not among what is
+/// read, and are left out; rates and accelerations of SBET are differences of the states.
+void write(const ConvertConfig& config, const io::FileContents& contents, const std::filesystem::path& folder);
+[[nodiscard]] std::string told(const ConvertConfig& config, const io::FileContents& contents,
                                const std::filesystem::path& folder);
 
 [[nodiscard]] std::vector<std::string> convert_format_names();

@@ -1,0 +1,53 @@
+#include "coast/io/recording_formats.hpp"
+
+#include "coast/io/rinex.hpp"
+#include "coast/io/writers.hpp"
+
+namespace coast::io {
+
+namespace {
+
+using Path = std::filesystem::path;
+
+bool has_observations(const FileContents& c) {
+  return c.observations.has_value();
+}
+bool has_navigation(const FileContents& c) {
+  return c.navigation.has_value();
+}
+bool has_imu(const FileContents& c) {
+  return c.imu.has_value();
+}
+bool has_fixes(const FileContents& c) {
+  return c.gnss.has_value();
+}
+bool has_marks(const FileContents& c) {
+  return c.marks.has_value();
+}
+
+constexpr RecordingPart kObservationPart{"obs", "observations", has_observations, [](const Path& file, const FileContents& c) {
+                                           write_observations(file, *c.observations);
+                                         }};
+constexpr RecordingPart kNavigationPart{"nav", "ephemerides", has_navigation,
+                                        [](const Path& file, const FileContents& c) { write_navigation(file, *c.navigation); }};
+constexpr RecordingPart kImuPart{
+    "imu.csv", "IMU", has_imu, [](const Path& file, const FileContents& c) { write_imu_csv(file, *c.imu, WeekColumn::kWith); }};
+constexpr RecordingPart kFixPart{"gnss.csv", "positions", has_fixes,
+                                 [](const Path& file, const FileContents& c) { write_gnss_csv(file, *c.gnss); }};
+constexpr RecordingPart kMarkPart{"marks.csv", "time marks", has_marks,
+                                  [](const Path& file, const FileContents& c) { write_time_marks_csv(file, *c.marks); }};
+constexpr RecordingPart kPosPart{"pos", "positions", has_fixes,
+                                 [](const Path& file, const FileContents& c) { write_gnss_pos(file, *c.gnss); }};
+
+}  // namespace
+
+const std::vector<RecordingFormat>& recording_formats() {
+  static const std::vector<RecordingFormat> table = {
+      {"rinex", "RINEX 3.05: observations (.obs), ephemerides (.nav)", {kObservationPart, kNavigationPart}},
+      {"csv", "tables of the IMU (.imu.csv), positions (.gnss.csv), time marks (.marks.csv)", {kImuPart, kFixPart, kMarkPart}},
+      {"pos", "positions as RTKLIB .pos", {kPosPart}},
+  };
+  return table;
+}
+
+}  // namespace coast::io
