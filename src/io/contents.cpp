@@ -9,6 +9,8 @@ namespace coast::io {
 
 namespace {
 
+constexpr double kHalfWeek = 302400.0;  // s
+
 class ContentsReader {
  public:
   ContentsReader(const std::filesystem::path& file, std::optional<int> gps_week) : file_(file), gps_week_(gps_week) {}
@@ -82,8 +84,15 @@ class ContentsReader {
       options.time.gps_week = gps_week_;
       contents_.trajectory = attempt([&] { return format.read_reference(options, std::nullopt); });
     }
-    if (format.read_observations) contents_.observations = attempt([&] { return format.read_observations(file_); });
-    if (format.read_navigation) contents_.navigation = attempt([&] { return format.read_navigation(file_); });
+    const auto near = gps_week_ ? std::optional(geo::GpsTime::from_week(*gps_week_, kHalfWeek)) : std::nullopt;
+    if (format.read_observations_near)
+      contents_.observations = attempt([&] { return format.read_observations_near(file_, near); });
+    else if (format.read_observations)
+      contents_.observations = attempt([&] { return format.read_observations(file_); });
+    if (format.read_navigation_near)
+      contents_.navigation = attempt([&] { return format.read_navigation_near(file_, near); });
+    else if (format.read_navigation)
+      contents_.navigation = attempt([&] { return format.read_navigation(file_); });
     if (format.read_time_marks) contents_.marks = attempt([&] { return format.read_time_marks(file_); });
   }
 

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <tuple>
 
+#include "coast/geo/units.hpp"
+
 namespace coast::io {
 
 namespace {
@@ -37,6 +39,37 @@ bool is_possible(const record::TabulatedEphemeris& e) {
 geo::GpsTime nearest_second_of_week(geo::GpsTime to, double sow) {
   constexpr double kWeek = 604800.0;
   return to + std::remainder(sow - to.sow(), kWeek);
+}
+
+double accuracy_of_ura(int index) {
+  constexpr int kTurn = 6;
+  // The values that the standard rounds: 2.8, 5.7, 11.3.
+  if (index <= kTurn) return std::round(10.0 * std::exp2(1.0 + 0.5 * index)) / 10.0;
+  return std::exp2(index - 2.0);
+}
+
+/// OS SIS ICD 2.1, table 89.
+double accuracy_of_sisa(int index) {
+  if (index < 50) return 0.01 * index;
+  if (index < 75) return 0.5 + 0.02 * (index - 50);
+  if (index < 100) return 1.0 + 0.04 * (index - 75);
+  return index <= 125 ? 2.0 + 0.16 * (index - 100) : 0.0;
+}
+
+geo::GpsTime nearest_second_of_moscow_day(geo::GpsTime to, double second_of_day) {
+  constexpr double kDay = 86400.0, kMoscow = 3.0 * geo::kHour;
+  return to + std::remainder(second_of_day - kMoscow + geo::leap_seconds(to) - to.sow(), kDay);
+}
+
+bool is_stated_week(geo::GpsTime t, int stated, int first, int weeks) {
+  const auto is = [&](geo::GpsTime instant) { return instant.week() >= first && (instant.week() - first) % weeks == stated; };
+  return is(t - geo::kHour) || is(t + geo::kHour);
+}
+
+bool is_beidou_geostationary(record::Satellite satellite) {
+  constexpr int kLastOfFirst = 5, kFirstOfNew = 59;
+  return satellite.system == record::SatelliteSystem::kBeidou &&
+         (satellite.number <= kLastOfFirst || satellite.number >= kFirstOfNew);
 }
 
 long sort_out(record::NavigationRecording& recording) {

@@ -7,6 +7,7 @@
 
 #include "coast/io/input.hpp"
 #include "coast/record/error.hpp"
+#include "rtcm/rtcm_messages.hpp"
 #include "text.hpp"
 
 namespace coast::io {
@@ -37,6 +38,8 @@ std::optional<FileKind> binary_kind(std::string_view head) {
   if (head.starts_with("PK\x03\x04")) return FileKind{"a zip archive", "Unpack it and name the file inside."};
   if (head.size() > 262 && head.substr(257, 5) == "ustar")
     return FileKind{"a tar archive", "Unpack it and name the file inside."};
+  if (begins_as_rtcm3(head))
+    return FileKind{"an RTCM 3 file of a base station", "It belongs under `gnss: {ppk: {rover: .., base: .., nav: [..]}}`."};
   if (head.find("\xb5\x62") != std::string_view::npos)  // NMEA sentences may be between its messages
     return FileKind{
         "a UBX file of a u-blox receiver",

@@ -9,6 +9,7 @@
 #include <stdexcept>
 
 #include "coast/record/error.hpp"
+#include "ephemerides.hpp"
 #include "text.hpp"
 
 namespace coast::io {

@@ -56,8 +56,6 @@ struct RinexKind {
 /// "G05", "G 5", " 5" (of `system`)
 [[nodiscard]] std::optional<record::Satellite> satellite_field(std::string_view text, char system);
 
-inline constexpr double kGpsMinusBeidou = 14.0;  ///< s
-
 enum class RinexTime { kGps, kUtc, kBeidou };
 /// Calendar fields to GPS time; none if invalid.
 [[nodiscard]] std::optional<geo::GpsTime> gps_time(const geo::Calendar& calendar, RinexTime scale);

@@ -9,6 +9,7 @@
 
 #include "coast/io/rinex.hpp"
 #include "coast/io/writers.hpp"
+#include "ephemerides.hpp"
 #include "rinex_lines.hpp"
 
 namespace coast::io {
@@ -19,8 +20,6 @@ using record::Observation;
 using record::Satellite;
 using record::SatelliteSystem;
 using record::Signal;
-
-constexpr int kGpsWeekMinusBeidou = 1356;
 
 /// "text ...   LABEL": sixty columns of text.
 std::string header_line(const std::string& text, std::string_view label) {
@@ -176,7 +175,7 @@ const char* kind_of(const record::KeplerEphemeris& e) {
     case SatelliteSystem::kGalileo:
       return (e.sources & kFnav) != 0 ? "FNAV" : "INAV";
     case SatelliteSystem::kBeidou:
-      return e.satellite.number <= 5 || e.satellite.number >= 59 ? "D2" : "D1";
+      return is_beidou_geostationary(e.satellite) ? "D2" : "D1";
     default:
       return "LNAV";
   }
@@ -186,7 +185,7 @@ std::string message(const record::KeplerEphemeris& e, RinexVersion version) {
   const bool beidou = e.satellite.system == SatelliteSystem::kBeidou;
   const double behind = beidou ? kGpsMinusBeidou : 0.0;
   const geo::GpsTime toe = e.toe - behind;
-  const int week = toe.week() - (beidou ? kGpsWeekMinusBeidou : 0);
+  const int week = toe.week() - (beidou ? kBeidouFirstWeek : 0);
   return message_head(e.satellite, (e.toc - behind).calendar(), version, kind_of(e)) +
          message_lines(std::array<double, 29>{e.clock[0],
                                               e.clock[1],

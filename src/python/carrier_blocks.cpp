@@ -62,8 +62,8 @@ py::dict single_points(const fs::path& observations, const std::vector<fs::path>
   Vectors r, sd;
   {
     const py::gil_scoped_release released;
-    const record::ObservationRecording receiver = io::read_observations(observations);
     const record::NavigationRecording messages = io::read_navigation(navigation);
+    const record::ObservationRecording receiver = io::read_observations(observations, io::middle_of(messages));
     const auto points =
         carrier::single_points(receiver, carrier::BroadcastOrbits(messages), options_with(messages, elevation_mask));
     r.setConstant(static_cast<Eigen::Index>(points.size()), 3, kNone);
@@ -138,9 +138,9 @@ py::dict double_differences(const fs::path& rover, const fs::path& base, const s
   DoubleDifferences rows;
   {
     const py::gil_scoped_release released;
-    const record::ObservationRecording of_rover = io::read_observations(rover);
-    const record::ObservationRecording of_base = io::read_observations(base);
     const record::NavigationRecording messages = io::read_navigation(navigation);
+    const record::ObservationRecording of_rover = io::read_observations(rover, io::middle_of(messages));
+    const record::ObservationRecording of_base = io::read_observations(base, io::middle_of(messages));
     const carrier::DifferenceOptions options = options_with(messages, elevation_mask);
     const Eigen::Vector3d at = base_position;
     for (const carrier::DifferenceEpoch& epoch : carrier::form_differences(

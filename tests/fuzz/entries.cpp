@@ -300,6 +300,12 @@ void ubx(std::string_view bytes) {
   read_and_check([&] { return io::read_time_marks(io::TimeMarkFileOptions::of_file(as_file(bytes))); });
 }
 
+void rtcm(std::string_view bytes) {
+  rinex_observation(bytes);  // both by content
+  rinex_navigation(bytes);
+  read_and_check([&] { return io::read_observations(as_file(bytes), geo::GpsTime::from_week(2244, 302400.0)); });
+}
+
 void vectornav(std::string_view bytes) {
   both_of(bytes, "vectornav");
 }
@@ -335,6 +341,7 @@ const std::vector<Entry>& entries() {
       {"gnss", gnss_auto},
       {"gnss_table", gnss_table},
       {"reference", reference_auto},
+      {"rtcm", rtcm},
       {"rinex_observation", rinex_observation},
       {"rinex_navigation", rinex_navigation},
       {"sp3", sp3},

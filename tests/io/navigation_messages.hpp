@@ -3,11 +3,20 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <vector>
 
 #include "io/receiver_messages.hpp"
 
 namespace coast::test {
+
+/// The value of a field: n 2^exponent, and the same in semicircles.
+inline double scaled(double n, int exponent) {
+  return std::ldexp(n, exponent);
+}
+inline double angle(double n, int exponent) {
+  return std::acos(-1.0) * scaled(n, exponent);
+}
 
 /// Bits one after another.
 class BitString {
@@ -151,6 +160,47 @@ inline std::vector<std::uint32_t> glonass_string(const BitString& data, std::uin
   auto words = string.words();
   words.push_back(frame);
   return words;
+}
+
+/// Four bits of check of eleven of data: remainder of their polynomial times x^4 by x^4 + x + 1, by long division.
+inline std::uint32_t bch_checks(const BitString& data) {
+  std::vector<bool> bits;
+  for (std::size_t i = 0; i < 11; ++i) bits.push_back(data.at(i));
+  bits.resize(15);
+  for (std::size_t i = 0; i < 11; ++i)
+    if (bits[i])
+      for (const std::size_t term : {0U, 3U, 4U}) bits[i + term] = !bits[i + term];
+  std::uint32_t checks = 0;
+  for (std::size_t i = 11; i < 15; ++i) checks = checks << 1 | (bits[i] ? 1U : 0U);
+  return checks;
+}
+
+/// How a receiver gives the checks of a word of BeiDou: those of its halves one after the other, or bit by bit in turn.
+enum class BeidouForm { kHalves, kInTurn };
+
+/// 224 bits of data of D1 or D2, from the preamble on, to ten words with checks.
+inline std::vector<std::uint32_t> beidou_words(const BitString& data, BeidouForm form = BeidouForm::kHalves) {
+  std::vector<std::uint32_t> words = {data.number(0, 26) << 4 | bch_checks(data.part(15, 11))};
+  for (std::size_t word = 1; word < 10; ++word) {
+    const std::size_t at = 26 + 22 * (word - 1);
+    const std::uint32_t first = bch_checks(data.part(at, 11)), second = bch_checks(data.part(at + 11, 11));
+    std::uint32_t checks = first << 4 | second;
+    if (form == BeidouForm::kInTurn) {
+      checks = 0;
+      for (int bit = 3; bit >= 0; --bit) checks = checks << 2 | (first >> bit & 1U) << 1 | (second >> bit & 1U);
+    }
+    words.push_back(data.number(at, 22) << 8 | checks);
+  }
+  return words;
+}
+
+/// A page of F/NAV around 214 bits, in eight words.
+inline std::vector<std::uint32_t> fnav_page(const BitString& data) {
+  BitString checked, page;
+  checked.put(0, 2).put(data);  // zeros in front do not change the CRC
+  std::string bytes;
+  for (std::size_t at = 0; at < checked.size(); at += 8) bytes += static_cast<char>(checked.number(at, 8));
+  return page.put(data).put(crc_bit_by_bit(bytes, 0x864CFB, 24), 24).put(0, 6 + 12).words();
 }
 
 }  // namespace coast::test

@@ -289,9 +289,220 @@ TEST(GlonassStrings, OfDifferentFramesAreNotMixed) {
   EXPECT_EQ(test::count_of(navigation.events, "navigation_spoiled"), 2);
 }
 
+/// A subframe from the preamble to the second of week.
+BitString beidou_head(int subframe, int second) {
+  return BitString().put(0b11100010010, 11).put(0, 4).put(subframe, 3).put(second, 20);
+}
+
+struct BeidouNumbers {
+  int week = kMessageWeek - 1356, second = 35'982, toe = 36'000 / 8;
+  std::int64_t root = std::llround(5282.6 * (1 << 19));
+};
+
+/// Subframes 1 to 3, six seconds apart.
+std::vector<BitString> d1(const BeidouNumbers& n) {
+  BitString one = beidou_head(1, n.second), two = beidou_head(2, n.second + 6), three = beidou_head(3, n.second + 12);
+  one.put(1, 1).put(9, 5).put(2, 4).put(n.week, 13).put(36'000 / 8, 17).put(-56, 10).put(30, 10).put(0, 64);
+  one.put(-3, 11).put(-345'678, 24).put(-1234, 22).put(17, 5);
+  two.put(12'345, 16).put(-222, 18).put(-1'717'986'918, 32).put(1'048'576, 32).put(3333, 18).put(7001, 18).put(-1100, 18);
+  two.put(n.root, 32).put(n.toe >> 15, 2);
+  three.put(n.toe, 15).put(657'000'000, 32).put(-44, 18).put(-21'000, 24).put(55, 18).put(-777, 14);
+  three.put(-1'000'000'001, 32).put(999'999'999, 32).put(0, 1);
+  return {one, two, three};
+}
+
+/// Pages 1 to 10 of subframe 1, three seconds apart: fields are split between them where the ICD has a cut.
+std::vector<BitString> d2(const BeidouNumbers& n) {
+  std::vector<BitString> pages;
+  for (int page = 1; page <= 10; ++page) pages.push_back(beidou_head(1, n.second + 3 * (page - 1)).put(page, 4));
+  const auto page = [&](int number) -> BitString& { return pages[static_cast<std::size_t>(number - 1)]; };
+  page(1).put(1, 1).put(9, 5).put(2, 4).put(n.week, 13).put(36'000 / 8, 17).put(-56, 10).put(30, 10);
+  page(3).put(0, 38).put(-345'678, 24).put(-1234 >> 18, 4);
+  page(4).put(-1234, 18).put(-3, 11).put(17, 5).put(12'345, 16).put(-222 >> 4, 14);
+  page(5).put(-222, 4).put(-1'717'986'918, 32).put(3333, 18).put(1'048'576 >> 22, 10);
+  page(6).put(1'048'576, 22).put(n.root, 32).put(-44 >> 8, 10);
+  page(7).put(-44, 8).put(55, 18).put(n.toe, 17).put(657'000'000 >> 11, 21);
+  page(8).put(657'000'000, 11).put(7001, 18).put(-1100, 18).put(-21'000 >> 5, 19);
+  page(9).put(-21'000, 5).put(-1'000'000'001, 32).put(999'999'999 >> 5, 27);
+  page(10).put(999'999'999, 5).put(-777, 14);
+  for (BitString& one : pages) one.put(0, static_cast<int>(224 - one.size()));
+  return pages;
+}
+
+std::string beidou(unsigned sv, unsigned signal, const std::vector<BitString>& parts,
+                   test::BeidouForm form = test::BeidouForm::kHalves) {
+  std::string messages;
+  for (const BitString& part : parts) messages += sfrbx(3, sv, signal, 0, test::beidou_words(part, form));
+  return messages;
+}
+
+void expect_beidou(const record::KeplerEphemeris& e) {
+  const geo::GpsTime t = geo::GpsTime::from_week(kMessageWeek, kMessageSecond + 14.0);
+  EXPECT_EQ(e.toe, t);
+  EXPECT_EQ(e.toc, t);
+  EXPECT_EQ(e.issue, 17);
+  EXPECT_EQ(e.health, 1);
+  EXPECT_EQ(e.accuracy_m, 4.0);
+  EXPECT_NEAR(e.group_delay[0], -5.6e-9, 1e-22);
+  EXPECT_NEAR(e.group_delay[1], 3.0e-9, 1e-22);
+  EXPECT_EQ(e.clock, (std::array{test::scaled(-345'678, -33), test::scaled(-1234, -50), test::scaled(-3, -66)}));
+  EXPECT_EQ(e.delta_n, test::angle(12'345, -43));
+  EXPECT_EQ(e.cuc, test::scaled(-222, -31));
+  EXPECT_EQ(e.mean_anomaly, test::angle(-1'717'986'918, -31));
+  EXPECT_EQ(e.eccentricity, test::scaled(1'048'576, -33));
+  EXPECT_EQ(e.cus, test::scaled(3333, -31));
+  EXPECT_EQ(e.crc, test::scaled(7001, -6));
+  EXPECT_EQ(e.crs, test::scaled(-1100, -6));
+  EXPECT_NEAR(e.sqrt_a, 5282.6, 1e-6);
+  EXPECT_EQ(e.inclination, test::angle(657'000'000, -31));
+  EXPECT_EQ(e.cic, test::scaled(-44, -31));
+  EXPECT_EQ(e.node_rate, test::angle(-21'000, -43));
+  EXPECT_EQ(e.cis, test::scaled(55, -31));
+  EXPECT_EQ(e.inclination_rate, test::angle(-777, -43));
+  EXPECT_EQ(e.node, test::angle(-1'000'000'001, -31));
+  EXPECT_EQ(e.perigee, test::angle(999'999'999, -31));
+}
+
+TEST(Beidou, D1AndD2HaveTheirNumbersInBothFormsOfChecks) {
+  for (const auto form : {test::BeidouForm::kHalves, test::BeidouForm::kInTurn}) {
+    const auto navigation =
+        navigation_of(timed(beidou(20, 0, d1({}), form) + beidou(3, 1, d2({}), form) + beidou(20, 4, d1({}), form)));
+    ASSERT_EQ(navigation.kepler.size(), 2U);
+    EXPECT_EQ(record::to_string(navigation.kepler[0].satellite), "C03");
+    EXPECT_EQ(record::to_string(navigation.kepler[1].satellite), "C20");
+    for (const auto& e : navigation.kepler) expect_beidou(e);
+    EXPECT_TRUE(navigation.events.empty());
+  }
+}
+
+/// Subframes of C10 as a receiver gave them (Swift Navigation's test of its own decoder), and the ephemeris in its RINEX file.
+TEST(Beidou, RecordedSubframesHaveTheEphemerisOfTheirRinexFile) {
+  const std::vector<std::vector<std::uint32_t>> recorded = {
+      {0x38901313, 0x12380030, 0x05046242, 0x1c0380cc, 0x1e0a1484, 0x3a0b8ffe, 0x0ef13020, 0x20007494, 0x08647f83, 0x3053e192},
+      {0x38902311, 0x12502f78, 0x2af7a35a, 0x0c5842f1, 0x3c440ae4, 0x0cc3a9fe, 0x09fe5e27, 0x2917f8a6, 0x1d6cae2c, 0x342e5c51},
+      {0x3890331e, 0x126b13e2, 0x204b051d, 0x0d487f3a, 0x3e8fff4f, 0x1155fea1, 0x16da91f5, 0x28a22cf0, 0x374c7ff3, 0x02c09a96}};
+  std::string messages;
+  for (const auto& words : recorded) messages += sfrbx(3, 10, 0, 0, words);
+  const auto navigation = navigation_of(timed(messages, 201'700.0, 1998));
+  ASSERT_EQ(navigation.kepler.size(), 1U);
+  const auto& e = navigation.kepler[0];
+  const auto near = [](double value, double rinex) { EXPECT_NEAR(value, rinex, 1e-11 * std::abs(rinex)); };  // its 12 digits
+  EXPECT_EQ(e.toe, geo::GpsTime::from_week(1998, 201'614.0));
+  EXPECT_EQ(e.toc, e.toe);
+  near(e.crc, -3.47640625000E+02);
+  near(e.crs, -1.20656250000E+02);
+  near(e.cuc, -3.98792326450E-06);
+  near(e.cus, 1.90609134734E-05);
+  near(e.cic, -2.18860805035E-08);
+  near(e.cis, -3.92086803913E-07);
+  near(e.delta_n, 1.08933108930E-09);
+  near(e.mean_anomaly, -1.43540489556E+00);
+  near(e.eccentricity, 4.98019636143E-03);
+  near(e.sqrt_a, 6.49363065910E+03);
+  near(e.node, 1.69518318499E+00);
+  near(e.node_rate, -2.13366030409E-09);
+  near(e.perigee, -2.75182959435E+00);
+  near(e.inclination, 9.20638105072E-01);
+  near(e.inclination_rate, -9.93255658799E-10);
+  near(e.clock[0], -1.81104638614E-04);
+  near(e.clock[1], -2.85078627371E-11);
+  EXPECT_EQ(e.clock[2], 0.0);
+  near(e.group_delay[0], 5.6E-09);
+  near(e.group_delay[1], 3.0E-09);
+  EXPECT_EQ(e.accuracy_m, 2.0);
+  EXPECT_EQ(e.health, 0);
+}
+
+TEST(Beidou, OfDifferentFramesIsNotMixed) {
+  auto torn = d1({}), next = d1({.second = 36'012});
+  torn[2] = next[2];
+  auto pages = d2({});
+  pages[6] = d2({.second = 36'012})[6];
+  const auto navigation = navigation_of(timed(beidou(20, 0, torn) + beidou(3, 1, pages) + beidou(21, 0, next)));
+  ASSERT_EQ(navigation.kepler.size(), 1U);
+  EXPECT_EQ(record::to_string(navigation.kepler[0].satellite), "C21");
+}
+
+TEST(Beidou, WithAWrongBitWeekOrOrbitIsLeftOutAndCounted) {
+  std::string spoiled;
+  const auto words = test::beidou_words(d1({})[1]);
+  for (std::size_t word = 0; word < 10; ++word)
+    for (int bit = 0; bit < 30; ++bit) {
+      auto wrong = words;
+      wrong[word] ^= 1U << bit;
+      // Nothing guards the four reserved bits behind the preamble.
+      if (word > 0 || bit < 15 || bit >= 19) spoiled += sfrbx(3, 20, 0, 0, wrong);
+    }
+  const auto navigation = navigation_of(timed(beidou(21, 0, d1({})) + spoiled + beidou(22, 0, d1({.week = 880})) +
+                                              beidou(23, 0, d1({.root = std::int64_t{1000} << 19}))));
+  EXPECT_EQ(navigation.kepler.size(), 1U);
+  EXPECT_EQ(test::count_of(navigation.events, "navigation_spoiled"), 296 + 1);
+  EXPECT_EQ(test::count_of(navigation.events, "navigation_impossible"), 1);
+}
+
+/// Pages 1 to 4.
+std::string fnav(unsigned sv, int issue = 77, int issue3 = 77, int week = kMessageWeek - 1024) {
+  const auto page = [&](int type, int iod) { return BitString().put(type, 6).put(iod, 10); };
+  BitString one, two = page(2, issue), three = page(3, issue3), four = page(4, issue);
+  one.put(1, 6).put(static_cast<int>(sv), 6).put(issue, 10).put(601, 14).put(-700'000, 31).put(800, 21).put(-9, 6).put(107, 8);
+  one.put(0, 11 + 11 + 14 + 5).put(-33, 10).put(2, 2).put(week, 12).put(36'000, 20).put(1, 1).put(0, 26);
+  two.put(-222'222'222, 32).put(-15'000, 24).put(1'000'000, 32).put(std::llround(5440.6 * (1 << 19)), 32);
+  two.put(-1'500'000'000, 32).put(-99, 14).put(week, 12).put(36'010, 20);
+  three.put(670'000'000, 32).put(333, 32).put(8000, 16).put(-1, 16).put(2, 16).put(-3, 16).put(4, 16).put(600, 14);
+  three.put(week, 12).put(36'020, 20).put(0, 8);
+  four.put(-5, 16).put(6, 16).put(0, 166);
+  std::string messages;
+  for (const BitString& p : {one, two, three, four}) messages += sfrbx(2, sv, 3, 0, test::fnav_page(p));
+  return messages;
+}
+
+TEST(Fnav, HasItsNumbers) {
+  const auto navigation = navigation_of(timed(fnav(7) + fnav(7)));
+  ASSERT_EQ(navigation.kepler.size(), 1U);
+  const auto& e = navigation.kepler[0];
+  EXPECT_EQ(record::to_string(e.satellite), "E07");
+  EXPECT_EQ(e.toe, geo::GpsTime::from_week(kMessageWeek, 36'000.0));
+  EXPECT_EQ(e.toc, geo::GpsTime::from_week(kMessageWeek, 36'060.0));
+  EXPECT_EQ(e.issue, 77);
+  EXPECT_EQ(e.sources, 258);
+  EXPECT_EQ(e.health, 1 << 3 | 2 << 4);
+  EXPECT_NEAR(e.accuracy_m, 3.12, 1e-12);
+  EXPECT_EQ(e.clock, (std::array{test::scaled(-700'000, -34), test::scaled(800, -46), test::scaled(-9, -59)}));
+  EXPECT_EQ(e.group_delay, (std::array{test::scaled(-33, -32), 0.0}));
+  EXPECT_EQ(e.mean_anomaly, test::angle(-222'222'222, -31));
+  EXPECT_EQ(e.node_rate, test::angle(-15'000, -43));
+  EXPECT_EQ(e.eccentricity, test::scaled(1'000'000, -33));
+  EXPECT_NEAR(e.sqrt_a, 5440.6, 1e-6);
+  EXPECT_EQ(e.node, test::angle(-1'500'000'000, -31));
+  EXPECT_EQ(e.inclination_rate, test::angle(-99, -43));
+  EXPECT_EQ(e.inclination, test::angle(670'000'000, -31));
+  EXPECT_EQ(e.perigee, test::angle(333, -31));
+  EXPECT_EQ(e.delta_n, test::angle(8000, -43));
+  EXPECT_EQ(e.cuc, test::scaled(-1, -29));
+  EXPECT_EQ(e.cus, test::scaled(2, -29));
+  EXPECT_EQ(e.crc, test::scaled(-3, -5));
+  EXPECT_EQ(e.crs, test::scaled(4, -5));
+  EXPECT_EQ(e.cic, test::scaled(-5, -29));
+  EXPECT_EQ(e.cis, test::scaled(6, -29));
+}
+
+TEST(Fnav, OfDifferentIssuesAnotherWeekOrWithAWrongBitIsLeftOut) {
+  const BitString data = BitString().put(4, 6).put(77, 10).put(0, 198);
+  std::string spoiled;
+  for (int bit = 0; bit < 238; ++bit) {
+    auto words = test::fnav_page(data);
+    words[static_cast<std::size_t>(bit / 32)] ^= 1U << (31 - bit % 32);
+    spoiled += sfrbx(2, 9, 3, 0, words);
+  }
+  const auto navigation = navigation_of(timed(fnav(7, 77, 78) + fnav(8) + spoiled + fnav(10, 77, 77, 5)));
+  ASSERT_EQ(navigation.kepler.size(), 1U);
+  EXPECT_EQ(navigation.kepler[0].satellite.number, 8);
+  EXPECT_EQ(test::count_of(navigation.events, "navigation_spoiled"), 238 + 3);
+}
+
 TEST(UbxNavigation, NamesWhatItDoesNotDecode) {
   std::string messages = lnav(0, 7, {}) + sfrbx(0, 7, 4, 0, std::vector<std::uint32_t>(10)) +
-                         sfrbx(2, 7, 3, 0, std::vector<std::uint32_t>(8)) + sfrbx(3, 7, 0, 0, std::vector<std::uint32_t>(10)) +
+                         sfrbx(2, 7, 8, 0, std::vector<std::uint32_t>(8)) + sfrbx(3, 7, 5, 0, std::vector<std::uint32_t>(10)) +
                          sfrbx(1, 123, 0, 0, std::vector<std::uint32_t>(8)) +
                          sfrbx(6, 255, 0, 4, std::vector<std::uint32_t>(4)) + test::ubx(0x02, 0x13, "abc");
   const auto navigation = navigation_of(timed(messages));
@@ -299,7 +510,7 @@ TEST(UbxNavigation, NamesWhatItDoesNotDecode) {
   EXPECT_EQ(test::count_of(navigation.events, "navigation_spoiled"), 1);
   std::string texts;
   for (const auto& event : navigation.events) texts += event.text + "\n";
-  for (const char* name : {"GPS CNAV", "Galileo F/NAV", "BeiDou", "SBAS", "unknown satellites"})
+  for (const char* name : {"GPS CNAV", "Galileo C/NAV", "BeiDou CNAV", "SBAS", "unknown satellites"})
     EXPECT_NE(texts.find(name), std::string::npos) << name << "\n" << texts;
 }
 

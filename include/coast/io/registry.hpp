@@ -35,6 +35,9 @@ struct Format {
   std::function<record::ObservationRecording(const std::filesystem::path&)> read_observations = {};
   std::function<record::NavigationRecording(const std::filesystem::path&)> read_navigation = {};
   std::function<record::TimeMarkRecording(const std::filesystem::path&)> read_time_marks = {};
+  /// Formats that may not state the week: the same with a time less than half a week from the first epoch, if one is known.
+  std::function<record::ObservationRecording(const std::filesystem::path&, Near)> read_observations_near = {};
+  std::function<record::NavigationRecording(const std::filesystem::path&, Near)> read_navigation_near = {};
   /// Of a file that consists of messages: how many of which kind, the most frequent first.
   std::function<std::vector<MessageCount>(const std::filesystem::path&)> count_messages = {};
 };

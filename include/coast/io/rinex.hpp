@@ -4,6 +4,7 @@
 // functions read files of receivers (registry.hpp), recognised by their content.
 
 #include <filesystem>
+#include <optional>
 #include <vector>
 
 #include "coast/record/navigation.hpp"
@@ -17,20 +18,26 @@ namespace coast::io {
 /// repeat or go back in time, an epoch cut off by the end of the file, cycle-slip records. A power failure (flag 1) is a loss
 /// of lock of all signals. UBX: those of UBX-RXM-RAWX; a loss of lock where the time of lock is shorter than before, or than
 /// the interval, or where half a cycle has been resolved.
+/// RTCM 3: MSM4 to MSM7, 1002, 1004, 1010, 1012, all messages of one time as one epoch; a loss of lock where the time of lock
+/// is shorter than before, or than the interval.
+/// @param near  GPS time less than half a week from the first epoch, for files that do not state the week (RTCM 3)
 /// @throws InputError  not a RINEX observation file, an incomplete header, an epoch line that cannot be read, with line; a file
-/// of
-///                     a receiver without observations
-[[nodiscard]] record::ObservationRecording read_observations(const std::filesystem::path& file);
+///                     of a receiver without observations, or without a message that states the week where `near` is not given
+[[nodiscard]] record::ObservationRecording read_observations(const std::filesystem::path& file,
+                                                             std::optional<geo::GpsTime> near = std::nullopt);
 
 /// Every ephemeris of GPS (LNAV), Galileo (I/NAV and F/NAV), BeiDou (D1, D2), QZSS, GLONASS and SBAS. Messages that the orbit
 /// computation does not support (CNAV, NavIC, system time) are counted, repeated ones are kept once, impossible ones (an
-/// eccentricity above 0.5, an orbit below the ground) are left out and counted. UBX: LNAV, I/NAV and GLONASS of UBX-RXM-SFRBX.
+/// eccentricity above 0.5, an orbit below the ground) are left out and counted. UBX: LNAV, I/NAV, F/NAV,
+/// GLONASS and D1, D2 of BeiDou of UBX-RXM-SFRBX. RTCM 3: 1019, 1020, 1042, 1044, 1045, 1046.
 /// @throws InputError  not a RINEX navigation file, or nothing in it that can be used; a file of a receiver without navigation
 ///                     messages, or without a message that states the week
 [[nodiscard]] record::NavigationRecording read_navigation(const std::filesystem::path& file);
 /// Joins several files, e.g. one per system or one per day. The ionosphere model is that of the first file.
 /// @throws InputError  as above, for any of them
 [[nodiscard]] record::NavigationRecording read_navigation(const std::vector<std::filesystem::path>& files);
+/// Half way from the first ephemeris to the last: a time that decides between weeks. None without ephemerides.
+[[nodiscard]] std::optional<geo::GpsTime> middle_of(const record::NavigationRecording& navigation);
 
 /// RINEX versions for writing: 3.05 and 4.01.
 enum class RinexVersion { kThree, kFour };

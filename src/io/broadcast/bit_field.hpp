@@ -1,9 +1,11 @@
 #pragma once
 // Numbers in navigation messages: fields of bits, the first bit the highest. Private to the room.
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <span>
+#include <string_view>
 
 namespace coast::io {
 
@@ -37,6 +39,11 @@ class BitField {
   std::span<const std::uint8_t> bytes_;
 };
 
+/// Of the bytes of a message in a file.
+[[nodiscard]] inline BitField bits_of(std::string_view bytes) {
+  return BitField({reinterpret_cast<const std::uint8_t*>(bytes.data()), bytes.size()});
+}
+
 /// Fields one after another.
 class BitCursor {
  public:
@@ -44,6 +51,9 @@ class BitCursor {
   /// The next bits, scaled by 2^exponent.
   [[nodiscard]] double number(std::size_t count, int exponent);
   [[nodiscard]] double signed_number(std::size_t count, int exponent);
+  /// The first bit is the sign (GLONASS).
+  [[nodiscard]] double magnitude_number(std::size_t count, int exponent);
+  [[nodiscard]] int signed_integer(std::size_t count) { return field_.signed_bits(advance(count), count); }
   [[nodiscard]] int integer(std::size_t count) { return static_cast<int>(field_.bits(advance(count), count)); }
   void skip(std::size_t count) { at_ += count; }
 
@@ -54,6 +64,22 @@ class BitCursor {
     return at;
   }
   const BitField& field_;
+  std::size_t at_;
+};
+
+/// Copies bits to the end of a string of bits, which begins at bit `at`.
+template <std::size_t Bytes>
+class BitWriter {
+ public:
+  explicit BitWriter(std::size_t at = 0) : at_(at) {}
+  void append(const BitField& from, std::size_t at, std::size_t count) {
+    for (std::size_t i = at; i < at + count; ++i, ++at_)
+      bytes_.at(at_ / 8) = static_cast<std::uint8_t>(bytes_.at(at_ / 8) | from.bits(i, 1) << (7 - at_ % 8));
+  }
+  [[nodiscard]] const std::array<std::uint8_t, Bytes>& bytes() const { return bytes_; }
+
+ private:
+  std::array<std::uint8_t, Bytes> bytes_{};
   std::size_t at_;
 };
 

@@ -16,22 +16,6 @@ using InavWord = std::array<std::uint8_t, 16>;
 
 constexpr std::size_t kOddPart = 128;  // bit at which it begins in the page
 
-/// Copies bits to the end of a string of bits.
-template <std::size_t Bytes>
-class BitWriter {
- public:
-  explicit BitWriter(std::size_t at = 0) : at_(at) {}
-  void append(const BitField& from, std::size_t at, std::size_t count) {
-    for (std::size_t i = at; i < at + count; ++i, ++at_)
-      bytes_.at(at_ / 8) = static_cast<std::uint8_t>(bytes_.at(at_ / 8) | from.bits(i, 1) << (7 - at_ % 8));
-  }
-  [[nodiscard]] const std::array<std::uint8_t, Bytes>& bytes() const { return bytes_; }
-
- private:
-  std::array<std::uint8_t, Bytes> bytes_{};
-  std::size_t at_;
-};
-
 /// Table 40: the CRC is over the even part without its tail and the odd part up to the CRC.
 bool crc_holds(const BitField& page) {
   constexpr std::size_t kEven = 114, kOdd = 82, kCrc = 24, kBytes = 25;
@@ -48,14 +32,6 @@ InavWord word_of(const BitField& page) {
   writer.append(page, 2, 112);
   writer.append(page, kOddPart + 2, 16);
   return writer.bytes();
-}
-
-/// Table 89: signal-in-space accuracy, m; 0 where the satellite gives none.
-double sisa_of(int index) {
-  if (index < 50) return 0.01 * index;
-  if (index < 75) return 0.5 + 0.02 * (index - 50);
-  if (index < 100) return 1.0 + 0.04 * (index - 75);
-  return index <= 125 ? 2.0 + 0.16 * (index - 100) : 0.0;
 }
 
 constexpr std::size_t kAfterIssue = 16;  // type and IODnav
@@ -81,7 +57,7 @@ void read_inav_orbit(const std::array<InavWord, 5>& words, geo::GpsTime now, rec
   e.cus = c.signed_number(16, -29);
   e.crc = c.signed_number(16, -5);
   e.crs = c.signed_number(16, -5);
-  e.accuracy_m = sisa_of(c.integer(8));
+  e.accuracy_m = accuracy_of_sisa(c.integer(8));
   BitCursor d(four, kAfterIssue + 6);  // after the satellite's number
   e.cic = d.signed_number(16, -29);
   e.cis = d.signed_number(16, -29);
@@ -101,11 +77,6 @@ void read_inav_state(const InavWord& word, record::KeplerEphemeris& e) {
   e.health = valid_e1 | health_e1 << 1 | valid_e5b << 6 | health_e5b << 7;
 }
 
-int inav_week(geo::GpsTime t) {
-  constexpr int kFirstWeek = 1024, kWeeks = 4096;
-  return (t.week() - kFirstWeek) % kWeeks;
-}
-
 }  // namespace
 
 MessageUse InavDecoder::take(record::Satellite satellite, std::span<const std::uint8_t, 32> page, geo::GpsTime now,
@@ -118,10 +89,8 @@ MessageUse InavDecoder::take(record::Satellite satellite, std::span<const std::u
   const std::uint32_t type = BitField(word).bits(0, 6);
   if (type < 1 || type > 5) return MessageUse::kNotUsed;
   if (type == 4 && BitField(word).bits(kAfterIssue, 6) != satellite.number) return MessageUse::kWrong;
-  if (type == 5) {
-    const auto week = static_cast<int>(BitField(word).bits(73, 12));
-    if (week != inav_week(now - geo::kHour) && week != inav_week(now + geo::kHour)) return MessageUse::kWrong;
-  }
+  if (type == 5 && !is_stated_week(now, static_cast<int>(BitField(word).bits(73, 12)), kGalileoFirstWeek, kGalileoWeeks))
+    return MessageUse::kWrong;
   Words& words = satellites_[satellite];
   words.data.at(type - 1) = word;
   words.known.at(type - 1) = true;

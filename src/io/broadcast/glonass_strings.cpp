@@ -6,7 +6,6 @@
 
 #include "../ephemerides.hpp"
 #include "bit_field.hpp"
-#include "coast/geo/units.hpp"
 
 namespace coast::io {
 
@@ -50,13 +49,6 @@ struct GlonassAxis {
   double position, velocity, acceleration;
 };
 
-/// The instant of the ephemeris: t_b of string 2 counts quarters of an hour of the day in Moscow, UTC + 3 h.
-geo::GpsTime instant_of(const BitField& second, geo::GpsTime now) {
-  constexpr double kQuarter = 900.0, kDay = 86400.0, kMoscow = 3.0 * geo::kHour;
-  const double of_day = kQuarter * second.bits(icd_bit(76), 7) - kMoscow + geo::leap_seconds(now);
-  return now + std::remainder(of_day - now.sow(), kDay);
-}
-
 }  // namespace
 
 MessageUse GlonassDecoder::take(record::Satellite satellite, std::span<const std::uint8_t> string, std::uint32_t frame,
@@ -76,11 +68,11 @@ MessageUse GlonassDecoder::take(record::Satellite satellite, std::span<const std
   // The slot is zero on satellites of the first generation.
   const std::uint32_t slot = fourth.bits(icd_bit(15), 5);
   if (slot != 0 && slot != satellite.number) return MessageUse::kWrong;
-  constexpr double kKilometre = 1000.0;
+  constexpr double kKilometre = 1000.0, kQuarter = 900.0;
   const GlonassAxis x(data[0]), y(data[1]), z(data[2]);
   record::TabulatedEphemeris e;
   e.satellite = satellite;
-  e.t = instant_of(second, now);
+  e.t = nearest_second_of_moscow_day(now, kQuarter * second.bits(icd_bit(76), 7));  // t_b
   e.r_e = kKilometre * Eigen::Vector3d(x.position, y.position, z.position);
   e.v_e = kKilometre * Eigen::Vector3d(x.velocity, y.velocity, z.velocity);
   e.a_e = kKilometre * Eigen::Vector3d(x.acceleration, y.acceleration, z.acceleration);

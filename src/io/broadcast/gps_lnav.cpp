@@ -1,7 +1,6 @@
 #include "gps_lnav.hpp"
 
 #include <bit>
-#include <cmath>
 
 #include "../ephemerides.hpp"
 #include "bit_field.hpp"
@@ -66,14 +65,6 @@ constexpr std::size_t word_at(std::size_t word) {
   return 24 * (word - 1);
 }
 
-/// Nominal value of the user range accuracy index, m.
-double accuracy_of(int index) {
-  constexpr int kTurn = 6;
-  // The values that the standard rounds: 2.8, 5.7, 11.3.
-  if (index <= kTurn) return std::round(10.0 * std::exp2(1.0 + 0.5 * index)) / 10.0;
-  return std::exp2(index - 2.0);
-}
-
 struct Issues {
   int clock = 0, orbit2 = 0, orbit3 = 0;
   [[nodiscard]] bool agree() const { return (clock & 0xff) == orbit2 && orbit2 == orbit3; }
@@ -90,7 +81,7 @@ void read_lnav_clock(const LnavData& subframe, geo::GpsTime now, record::KeplerE
   const BitField field(subframe);
   BitCursor head(field, word_at(3) + 10);  // after the week
   e.sources = head.integer(2);
-  e.accuracy_m = accuracy_of(head.integer(4));
+  e.accuracy_m = accuracy_of_ura(head.integer(4));
   e.health = head.integer(6);
   BitCursor tail(field, word_at(7) + 16);
   e.group_delay[0] = tail.signed_number(8, -31);
@@ -143,7 +134,8 @@ std::optional<record::Klobuchar> ionosphere_of(const LnavData& subframe) {
 
 MessageUse LnavDecoder::take(record::Satellite satellite, std::span<const std::uint32_t> words, geo::GpsTime now,
                              record::NavigationRecording& into) {
-  constexpr std::uint32_t kPreamble = 0x8b, kWeeks = 1024;
+  constexpr std::uint32_t kPreamble = 0x8b;
+  constexpr int kWeeks = 1024;
   if (words.size() != kLnavWords || !parities_hold(words)) return MessageUse::kWrong;
   const LnavData data = data_of(words);
   const BitField field(data);
@@ -154,12 +146,7 @@ MessageUse LnavDecoder::take(record::Satellite satellite, std::span<const std::u
     return into.gps_ionosphere ? MessageUse::kEphemeris : MessageUse::kNotUsed;
   }
   if (number < 1 || number > 3) return number == 4 || number == 5 ? MessageUse::kNotUsed : MessageUse::kWrong;
-  // The week that the satellite transmits against the receiver's: around the turn of the week one may be ahead.
-  const auto week_of = [](geo::GpsTime t) { return static_cast<std::uint32_t>(t.week()) % kWeeks; };
-  if (number == 1) {
-    const std::uint32_t week = field.bits(word_at(3), 10);
-    if (week != week_of(now - geo::kHour) && week != week_of(now + geo::kHour)) return MessageUse::kWrong;
-  }
+  if (number == 1 && !is_stated_week(now, static_cast<int>(field.bits(word_at(3), 10)), 0, kWeeks)) return MessageUse::kWrong;
   Subframes& subframes = satellites_[satellite];
   subframes.data.at(number - 1) = data;
   subframes.known.at(number - 1) = true;

@@ -5,6 +5,7 @@
 
 namespace coast::io {
 
+[[nodiscard]] Format rtcm3_format();
 [[nodiscard]] Format ubx_format();
 [[nodiscard]] Format ulog_format();
 [[nodiscard]] Format vectornav_format();

@@ -294,6 +294,15 @@ record::NavigationRecording read_navigation(const std::filesystem::path& file) {
   return read_as(file, FileKind::Content::kRinex, "RINEX navigation messages", [&] { return NavigationReader(file).read(); });
 }
 
+std::optional<geo::GpsTime> middle_of(const record::NavigationRecording& navigation) {
+  std::vector<geo::GpsTime> times;
+  for (const KeplerEphemeris& e : navigation.kepler) times.push_back(e.toe);
+  for (const TabulatedEphemeris& e : navigation.tabulated) times.push_back(e.t);
+  if (times.empty()) return std::nullopt;
+  const auto [first, last] = std::ranges::minmax(times);
+  return first + 0.5 * (last - first);
+}
+
 record::NavigationRecording read_navigation(const std::vector<std::filesystem::path>& files) {
   record::NavigationRecording all;
   for (const std::filesystem::path& file : files) {

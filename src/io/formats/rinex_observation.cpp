@@ -318,8 +318,9 @@ void ObservationReader::report() {
 
 }  // namespace
 
-record::ObservationRecording read_observations(const std::filesystem::path& file) {
-  if (const Format* format = format_beside_rinex(file, &Format::read_observations)) return format->read_observations(file);
+record::ObservationRecording read_observations(const std::filesystem::path& file, std::optional<geo::GpsTime> near) {
+  if (const Format* format = format_beside_rinex(file, &Format::read_observations))
+    return format->read_observations_near ? format->read_observations_near(file, near) : format->read_observations(file);
   return read_as(file, FileKind::Content::kRinex, "RINEX observations", [&] { return ObservationReader(file).read(); });
 }
 

@@ -60,6 +60,8 @@ struct FrameKind {
 /// What may be in a log of a u-blox receiver: UBX, and NMEA and RTCM 3 between.
 inline constexpr std::array<FrameKind, 3> kUbxLog{
     {{Protocol::kUbx, '\xb5', try_ubx}, {Protocol::kNmea, '$', try_nmea}, {Protocol::kRtcm3, '\xd3', try_rtcm3}}};
+/// Of a base station or a caster: RTCM 3, and messages of the receiver between.
+inline constexpr std::array<FrameKind, 3> kRtcmLog = kUbxLog;
 /// Of a VectorNav: its binary output, and its ASCII output, which is framed like NMEA.
 inline constexpr std::array<FrameKind, 2> kVectorNavLog{
     {{Protocol::kVectorNav, '\xfa', try_vectornav}, {Protocol::kNmea, '$', try_nmea}}};

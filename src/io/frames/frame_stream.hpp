@@ -1,6 +1,7 @@
 #pragma once
 // The frames of a file, one after another, found again after garbage. Private to the room.
 
+#include <functional>
 #include <map>
 #include <span>
 #include <utility>
@@ -28,6 +29,10 @@ struct FrameCensus {
   /// What damage there is, as events: wrong checksums of protocols that the file has, skipped bytes, a cut end.
   [[nodiscard]] record::Events events(const std::string& file) const;
 };
+
+/// Those events, and the messages that are not read, by name and number.
+[[nodiscard]] record::Events file_events(const FrameCensus& census, const std::string& file,
+                                         const std::function<bool(Protocol, std::uint32_t)>& is_read);
 
 /// Number of frames by kind in a whole file, the most frequent first.
 [[nodiscard]] std::vector<MessageCount> count_frames(const std::filesystem::path& file, std::span<const FrameKind> kinds);

@@ -6,6 +6,8 @@
 #include <vector>
 
 #include "../binary.hpp"
+#include "../broadcast/beidou_messages.hpp"
+#include "../broadcast/galileo_fnav.hpp"
 #include "../broadcast/galileo_inav.hpp"
 #include "../broadcast/glonass_strings.hpp"
 #include "../broadcast/gps_lnav.hpp"
@@ -41,11 +43,17 @@ std::optional<Subframe> subframe_of(std::string_view payload) {
 }
 
 /// The words' bits in the order of transmission.
-template <std::size_t Words>
-std::array<std::uint8_t, 4 * Words> bytes_of(const std::vector<std::uint32_t>& words) {
-  std::array<std::uint8_t, 4 * Words> bytes{};
+template <std::size_t Bytes>
+std::array<std::uint8_t, Bytes> bytes_of(const std::vector<std::uint32_t>& words) {
+  std::array<std::uint8_t, Bytes> bytes{};
   for (std::size_t i = 0; i < bytes.size(); ++i) bytes.at(i) = static_cast<std::uint8_t>(words.at(i / 4) >> (24 - 8 * (i % 4)));
   return bytes;
+}
+
+/// Of B1I, B2I and B3I; the newer signals send the messages B-CNAV1 to 3.
+bool is_beidou_d1_or_d2(std::uint8_t signal) {
+  constexpr std::uint8_t kB3d1 = 4, kB3d2 = 10;
+  return signal <= kB3d1 || signal == kB3d2;
 }
 
 std::string_view kind_of(System system, std::uint8_t signal) {
@@ -55,11 +63,11 @@ std::string_view kind_of(System system, std::uint8_t signal) {
     case System::kQzss:
       return signal == 0 ? "QZSS LNAV" : signal == 1 ? "QZSS L1S" : "QZSS CNAV";
     case System::kGalileo:
-      return signal == 1 || signal == 5 ? "Galileo I/NAV" : "Galileo F/NAV and C/NAV";
+      return signal == 1 || signal == 5 ? "Galileo I/NAV" : signal == 3 ? "Galileo F/NAV" : "Galileo C/NAV";
     case System::kGlonass:
       return "GLONASS";
     case System::kBeidou:
-      return "BeiDou";
+      return is_beidou_d1_or_d2(signal) ? "BeiDou D1 and D2" : "BeiDou CNAV";
     case System::kSbas:
       return "SBAS";
     case System::kNavic:
@@ -96,6 +104,8 @@ class SubframeReader {
   record::NavigationRecording recording_;
   LnavDecoder lnav_;
   InavDecoder inav_;
+  FnavDecoder fnav_;
+  BeidouDecoder beidou_;
   GlonassDecoder glonass_;
   long spoiled_ = 0, impossible_ = 0;
   std::map<std::string_view, long> not_decoded_;
@@ -121,16 +131,20 @@ void SubframeReader::take(std::string_view payload) {
 
 /// None for a message that no decoder is for.
 std::optional<MessageUse> SubframeReader::decode(record::Satellite satellite, const Subframe& subframe) {
-  constexpr std::size_t kInavWords = 8, kGlonassWords = 4;
+  constexpr std::size_t kGalileoWords = 8, kInavBytes = 32, kFnavBytes = 31, kGlonassWords = 4, kGlonassBytes = 16;
   constexpr int kChannelOffset = 7;
   const std::size_t words = subframe.words.size();
   const bool ca = subframe.signal == 0;
   if ((satellite.system == System::kGps || satellite.system == System::kQzss) && ca)
     return lnav_.take(satellite, subframe.words, *now_, recording_);
-  if (satellite.system == System::kGalileo && (subframe.signal == 1 || subframe.signal == 5) && words >= kInavWords)
-    return inav_.take(satellite, bytes_of<kInavWords>(subframe.words), *now_, recording_);
+  if (satellite.system == System::kGalileo && (subframe.signal == 1 || subframe.signal == 5) && words >= kGalileoWords)
+    return inav_.take(satellite, bytes_of<kInavBytes>(subframe.words), *now_, recording_);
+  if (satellite.system == System::kGalileo && subframe.signal == 3 && words >= kGalileoWords)
+    return fnav_.take(satellite, bytes_of<kFnavBytes>(subframe.words), *now_, recording_);
+  if (satellite.system == System::kBeidou && is_beidou_d1_or_d2(subframe.signal))
+    return beidou_.take(satellite, subframe.words, *now_, recording_);
   if (satellite.system == System::kGlonass && words >= kGlonassWords)
-    return glonass_.take(satellite, bytes_of<kGlonassWords>(subframe.words), subframe.words[3],
+    return glonass_.take(satellite, bytes_of<kGlonassBytes>(subframe.words), subframe.words[3],
                          subframe.frequency - kChannelOffset, *now_, recording_);
   return std::nullopt;
 }

@@ -74,9 +74,10 @@ std::string in_words(const ObservationRecording& receiver) {
 
 PpkRecordings load(const PpkConfig& config) {
   PpkRecordings recordings;
-  recordings.rover = io::read_observations(config.rover);
-  recordings.base = io::read_observations(config.base);
   recordings.navigation = io::read_navigation(config.navigation);
+  const auto near = io::middle_of(recordings.navigation);
+  recordings.rover = io::read_observations(config.rover, near);
+  recordings.base = io::read_observations(config.base, near);
   if (!config.sp3.empty()) recordings.precise = io::read_sp3(config.sp3);
   if (recordings.precise && !config.clocks.empty()) recordings.clocks = io::read_clocks(config.clocks);
   if (config.antex) recordings.antennas = io::read_antex(*config.antex);
