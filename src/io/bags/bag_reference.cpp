@@ -53,6 +53,7 @@ class BagPoses {
       throw InputError(
           {file_, 0, fmt::format("{} poses, none with a time, a place and a unit quaternion", rows_), "at least one", ""});
     trajectory_.source = file_;
+    trajectory_.has_velocity = false;
     trajectory_.has_attitude = true;
     trajectory_.events = std::move(damage);
     repairs_.finish(rows_, trajectory_.events);

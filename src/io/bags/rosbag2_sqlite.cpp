@@ -61,12 +61,15 @@ class Rosbag2Stream final : public BagStream {
   }
 
   void open(const std::filesystem::path& file) {
+    if (file.extension() == ".gz")
+      throw InputError({name_, 0, "a gzip-compressed database", "one that is not", "Unpack it: `gunzip`."});
     sqlite3* base = nullptr;
     const int status = sqlite3_open_v2(file.c_str(), &base, SQLITE_OPEN_READONLY, nullptr);
     base_.reset(base);
     if (status != SQLITE_OK) refuse(fmt::format("cannot be opened by SQLite: {}", sqlite3_errstr(status)));
-    // A file of others: nothing that its schema defines is to run, and no message is to fill the memory.
-    sqlite3_db_config(base, SQLITE_DBCONFIG_DEFENSIVE, 1, nullptr);
+    // A file of others: nothing that its schema defines is to run, and no message is to fill the memory. With a schema that
+    // could be written, a file that is shorter than its header says is read all the same.
+    sqlite3_db_config(base, SQLITE_DBCONFIG_WRITABLE_SCHEMA, 1, nullptr);
     sqlite3_db_config(base, SQLITE_DBCONFIG_TRUSTED_SCHEMA, 0, nullptr);
     sqlite3_limit(base, SQLITE_LIMIT_LENGTH, static_cast<int>(BagSource::kMost));
   }
