@@ -10,6 +10,8 @@ find_package(CLI11 REQUIRED)
 find_package(FastFloat REQUIRED)
 find_package(TBB REQUIRED)
 find_package(ZLIB REQUIRED)
+find_package(BZip2 REQUIRED)
+find_package(SQLite3 REQUIRED)
 find_package(Threads REQUIRED)
 
 # CHOLMOD of Debian 12 comes without files for CMake.
@@ -18,6 +20,15 @@ find_path(CHOLMOD_INCLUDE_DIR cholmod.h PATH_SUFFIXES suitesparse REQUIRED)
 add_library(coast_cholmod INTERFACE IMPORTED)
 target_include_directories(coast_cholmod INTERFACE ${CHOLMOD_INCLUDE_DIR})
 target_link_libraries(coast_cholmod INTERFACE ${CHOLMOD_LIBRARY})
+
+# LZ4 of Debian 12 has none either; Zstandard's target has another name where it is built otherwise.
+foreach(codec lz4 zstd)
+  find_library(${codec}_LIBRARY ${codec} REQUIRED)
+  find_path(${codec}_INCLUDE_DIR ${codec}.h REQUIRED)
+  add_library(coast_${codec} INTERFACE IMPORTED)
+  target_include_directories(coast_${codec} INTERFACE ${${codec}_INCLUDE_DIR})
+  target_link_libraries(coast_${codec} INTERFACE ${${codec}_LIBRARY})
+endforeach()
 
 # FindGeographicLib gives variables; an imported target keeps its headers out of our warnings and out of what is installed.
 add_library(coast_geographiclib INTERFACE IMPORTED)

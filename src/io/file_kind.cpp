@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cctype>
 
+#include "bags/bag_stream.hpp"
 #include "coast/io/input.hpp"
 #include "coast/record/error.hpp"
 #include "rtcm/rtcm_messages.hpp"
@@ -36,6 +37,9 @@ bool is_sp3(std::string_view line) {
 std::optional<FileKind> binary_kind(std::string_view head) {
   if (head.starts_with("\x1f\x8b")) return FileKind{"a gzip file inside a gzip file", "Unpack it once."};
   if (head.starts_with("PK\x03\x04")) return FileKind{"a zip archive", "Unpack it and name the file inside."};
+  if (head.starts_with("\x28\xb5\x2f\xfd")) return FileKind{"a Zstandard-compressed file", "Unpack it: `zstd -d`."};
+  if (begins_as_rosbag1(head) || begins_as_mcap(head) || begins_as_sqlite(head))
+    return FileKind{"a bag of ROS", "It belongs under `gnss: {file: ..}` or `imu: {file: ..}`."};
   if (head.size() > 262 && head.substr(257, 5) == "ustar")
     return FileKind{"a tar archive", "Unpack it and name the file inside."};
   if (begins_as_rtcm3(head))

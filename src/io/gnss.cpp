@@ -24,6 +24,7 @@ GnssFileOptions GnssFileOptions::from(const config::Node& gnss) {
   o.format = gnss.text("format", "auto");
   o.position = PositionOptions::from(gnss);
   o.time = TimeOptions::from(gnss);
+  o.topic = gnss.text("topic", "");
   o.sd = positive_vector(gnss, "sd_m");
   o.velocity_sd = positive_vector(gnss, "velocity_sd_mps");
   const auto columns = gnss.find("columns");

@@ -29,6 +29,7 @@ ImuFileOptions ImuFileOptions::from(const config::Node& imu) {
   o.format = imu.text("format", "auto");
   o.increments = imu.choice("values", {"rates", "increments"}, 0) == 1;
   o.time = TimeOptions::from(imu);
+  o.topic = imu.text("topic", "");
   o.time_tag = static_cast<TimeTag>(imu.choice("time_tag", {"end", "centre", "start"}, 0));
   if (const auto columns = imu.find("columns")) {
     if (o.time.kind != TimeKind::kRow) o.time_columns = Column::list_from(columns->at("time"), 0);

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "coast/geo/rotation.hpp"
 #include "coast/geo/units.hpp"
@@ -57,12 +58,12 @@ PositionOptions PositionOptions::from(const config::Node& map) {
   return o;
 }
 
-PositionConverter::PositionConverter(const PositionOptions& options, const TableReader& table)
-    : table_(table), options_(options) {
+PositionConverter::PositionConverter(const PositionOptions& options, std::string name, WeekClock::MakeError error)
+    : name_(std::move(name)), error_(std::move(error)), options_(options) {
   using Frame = PositionOptions::Frame;
   if (options.frame == Frame::kNed || options.frame == Frame::kEnu) {
     if (!options.origin)
-      throw InputError({table.name(), 0, "coordinates relative to an origin that is not stated", "",
+      throw InputError({name_, 0, "coordinates relative to an origin that is not stated", "",
                         "State `origin_deg_m: [lat, lon, h]` beside the file."});
     local_.emplace(*options.origin);
   }
@@ -74,7 +75,7 @@ record::Events PositionConverter::events() const {
       {record::Event::Severity::kWarning, "msl_height",
        fmt::format("{}: heights are above mean sea level and were used as they are; relative work is not affected, absolute "
                    "heights are off by the local geoid height (give `geoid_height_m`)",
-                   table_.name()),
+                   name_),
        std::nullopt, 1}};
 }
 
@@ -83,9 +84,9 @@ double PositionConverter::ellipsoidal(double height) const {
 }
 
 Eigen::Vector3d PositionConverter::from_geodetic(double latitude_deg, double longitude_deg, double height) const {
-  if (std::abs(latitude_deg) > 90.0) throw table_.error(fmt::format("latitude {} deg", latitude_deg), "-90 to 90");
-  if (std::abs(longitude_deg) > 360.0) throw table_.error(fmt::format("longitude {} deg", longitude_deg), "-180 to 360");
-  if (height < kLowest || height > kHighest) throw table_.error(fmt::format("height {} m", height), "a height in metres");
+  if (std::abs(latitude_deg) > 90.0) throw error_(fmt::format("latitude {} deg", latitude_deg), "-90 to 90", "");
+  if (std::abs(longitude_deg) > 360.0) throw error_(fmt::format("longitude {} deg", longitude_deg), "-180 to 360", "");
+  if (height < kLowest || height > kHighest) throw error_(fmt::format("height {} m", height), "a height in metres", "");
   return geo::ecef_from_geodetic(
       {latitude_deg * geo::kDegree, geo::wrap_angle(longitude_deg * geo::kDegree), ellipsoidal(height)});
 }
@@ -98,13 +99,13 @@ Eigen::Vector3d PositionConverter::to_ecef(double a, double b, double c) const {
     case Frame::kEcef: {
       const double radius = std::hypot(a, b, c);
       if (radius < 6.3e6 || radius > 9.0e6)
-        throw table_.error(fmt::format("a position {:.3f} km from the Earth's centre", radius * 1e-3), "6300 to 9000 km",
-                           "Are these ECEF coordinates in metres?");
+        throw error_(fmt::format("a position {:.3f} km from the Earth's centre", radius * 1e-3), "6300 to 9000 km",
+                     "Are these ECEF coordinates in metres?");
       return {a, b, c};
     }
     case Frame::kUtm: {
       if (a < 0.0 || a > 1.0e6 || b < -1.0e7 || b > 1.0e7)
-        throw table_.error(fmt::format("UTM easting {}, northing {}", a, b), "0 to 1e6 and 0 to 1e7 m", "Are they swapped?");
+        throw error_(fmt::format("UTM easting {}, northing {}", a, b), "0 to 1e6 and 0 to 1e7 m", "Are they swapped?");
       return geo::ecef_from_geodetic(geo::geodetic_from_utm(options_.utm_zone, options_.utm_north, a, b, ellipsoidal(c)));
     }
     case Frame::kNed:
@@ -113,7 +114,7 @@ Eigen::Vector3d PositionConverter::to_ecef(double a, double b, double c) const {
   }
   const Eigen::Vector3d ned = options_.frame == Frame::kNed ? Eigen::Vector3d(a, b, c) : Eigen::Vector3d(b, a, -c);
   if (ned.norm() > kHighest)
-    throw table_.error(fmt::format("{:.0f} m from the origin", ned.norm()), "local coordinates in metres");
+    throw error_(fmt::format("{:.0f} m from the origin", ned.norm()), "local coordinates in metres", "");
   return local_->to_ecef(ned);
 }
 

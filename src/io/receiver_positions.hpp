@@ -23,7 +23,7 @@ struct ReceiverPosition {
   std::optional<Eigen::Vector3d> v_ea_n;
   std::optional<Eigen::Matrix3d> velocity_cov_n;
   record::FixQuality quality = record::FixQuality::kUnknown;
-  int satellites = 0;
+  std::optional<int> satellites;
 };
 
 /// None for coordinates that are not on the Earth, NaN among them.

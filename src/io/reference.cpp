@@ -11,6 +11,7 @@ ReferenceFileOptions ReferenceFileOptions::from(const config::Node& reference) {
   o.format = reference.text("format", "auto");
   o.position = PositionOptions::from(reference);
   o.time = TimeOptions::from(reference);
+  o.topic = reference.text("topic", "");
   o.attitude.to_enu = reference.choice("attitude_to", {"ned", "enu"}, 0) == 1;
   o.attitude.body_flu = reference.choice("body_axes", {"frd", "flu"}, 0) == 1;
   const auto columns = reference.find("columns");

@@ -314,6 +314,32 @@ void ulog(std::string_view bytes) {
   both_of(bytes, "ulog");
 }
 
+/// Bags have poses too.
+void bag(std::string_view bytes, const char* format) {
+  both_of(bytes, format);
+  io::ReferenceFileOptions options = io::ReferenceFileOptions::of_file(as_file(bytes));
+  options.format = format;
+  options.position.frame = io::PositionOptions::Frame::kEnu;
+  options.position.origin = geo::Geodetic{0.8, 0.1, 500.0};
+  read_and_check([&] { return io::read_reference(options); });
+}
+
+void rosbag(std::string_view bytes) {
+  bag(bytes, "rosbag");
+}
+
+void mcap(std::string_view bytes) {
+  bag(bytes, "mcap");
+}
+
+void rosbag2(std::string_view bytes) {
+  bag(bytes, "rosbag2");
+}
+
+void dataflash(std::string_view bytes) {
+  both_of(bytes, "dataflash");
+}
+
 void antex(std::string_view bytes) {
   read_and_check([&] { return io::read_antex(as_file(bytes)); });
 }
@@ -350,6 +376,10 @@ const std::vector<Entry>& entries() {
       {"member_blocks", member_blocks},
       {"noise_levels", noise_levels},
       {"packets", packets},
+      {"dataflash", dataflash},
+      {"mcap", mcap},
+      {"rosbag", rosbag},
+      {"rosbag2", rosbag2},
       {"ubx", ubx},
       {"ulog", ulog},
       {"vectornav", vectornav},

@@ -3,10 +3,13 @@
 
 #include <zlib.h>
 
+#include <array>
+#include <cstdio>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
 #include <string>
+#include <vector>
 
 #include "coast/io/gnss.hpp"
 #include "coast/io/imu.hpp"
@@ -64,6 +67,19 @@ class Files {
   }
   TemporaryDirectory folder_;
 };
+
+/// The lines that a script of this folder prints of a file or for a folder; nothing if it cannot run.
+inline std::vector<std::string> lines_of_script(const std::string& script, const std::filesystem::path& argument) {
+  const std::string command =
+      "/usr/bin/python3 '" COAST_SOURCE_DIR "/tests/io/" + script + "' '" + argument.string() + "' 2>/dev/null";
+  std::vector<std::string> lines;
+  std::FILE* pipe = popen(command.c_str(), "r");
+  if (pipe == nullptr) return lines;
+  std::array<char, 1024> line{};
+  while (std::fgets(line.data(), static_cast<int>(line.size()), pipe) != nullptr) lines.emplace_back(line.data());
+  pclose(pipe);
+  return lines;
+}
 
 /// Number of events of a kind, counts summed.
 inline long count_of(const record::Events& events, const std::string& kind) {

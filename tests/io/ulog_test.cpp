@@ -2,7 +2,6 @@
 
 #include <gtest/gtest.h>
 
-#include <cstdio>
 #include <sstream>
 
 #include "coast/geo/earth.hpp"
@@ -274,23 +273,10 @@ TEST(UlogFile, WithWrongDefinitionsLosesOnlyTheirTopics) {
   EXPECT_EQ(files.imu("flight.ulg").samples.size(), 600U);
 }
 
-/// The lines that the other reader prints; nothing if it cannot run.
-std::vector<std::string> lines_of_other_reader(const std::filesystem::path& file) {
-  const std::string command =
-      "/usr/bin/python3 '" COAST_SOURCE_DIR "/tests/io/ulog_table.py' '" + file.string() + "' 2>/dev/null";
-  std::vector<std::string> lines;
-  std::FILE* pipe = popen(command.c_str(), "r");
-  if (pipe == nullptr) return lines;
-  std::array<char, 512> line{};
-  while (std::fgets(line.data(), static_cast<int>(line.size()), pipe) != nullptr) lines.emplace_back(line.data());
-  pclose(pipe);
-  return lines;
-}
-
 TEST(UlogRecording, HasTheNumbersOfAnotherReader) {
   if (!test::data_dir()) GTEST_SKIP() << "COAST_DATA is not set: no recordings here";
   const auto file = *test::data_dir() / "ulog-px4/sample_log_small.ulg";
-  const auto lines = lines_of_other_reader(file);
+  const auto lines = test::lines_of_script("ulog_table.py", file);
   if (lines.empty()) GTEST_SKIP() << "no python3 with numpy here";
   ImuFileOptions imu_options;
   imu_options.file = file;

@@ -45,6 +45,7 @@ struct PositionOptions {
 ///       height: ellipsoidal                # or msl, with geoid_height_m
 ///       gps_week: 2374
 ///       time: {kind: unix}
+///       topic: /fix                        # of a bag with several
 ///
 /// Velocities are N, E, D; standard deviations N, E, D. Without `columns` a CSV file needs the header
 /// time_s, lat_deg, lon_deg, height_m, sdn_m, sde_m, sdd_m [, vn_mps, ve_mps, vd_mps, sdvn_mps, sdve_mps, sdvd_mps].
@@ -63,6 +64,7 @@ struct GnssFileOptions {
   std::optional<Eigen::Vector3d> sd;           ///< N, E, D, m; replaces the standard deviations in the file
   std::optional<Eigen::Vector3d> velocity_sd;  ///< N, E, D, m/s
   TimeOptions time;
+  std::string topic;  ///< of a bag; empty: the only one with positions
 
   [[nodiscard]] static GnssFileOptions from(const config::Node& gnss);
 };

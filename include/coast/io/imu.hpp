@@ -40,6 +40,7 @@ struct BinaryLayout {
 ///       time: {kind: sow, unit: ms, offset_s: 243000.0}
 ///       time_tag: end                      # or centre | start
 ///       binary: {type: i16, row: 6}
+///       topic: /imu/data                   # of a bag with several
 ///
 /// Without `columns` a CSV file needs the default header: time_s, gyro_x_radps, .., accel_x_mps2, .., [temperature_degC].
 struct ImuFileOptions {
@@ -56,6 +57,7 @@ struct ImuFileOptions {
   TimeOptions time;
   TimeTag time_tag = TimeTag::kEnd;
   BinaryLayout binary;
+  std::string topic;  ///< of a bag; empty: the only one with an IMU
 
   [[nodiscard]] static ImuFileOptions from(const config::Node& imu);
 };

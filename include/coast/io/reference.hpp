@@ -31,7 +31,7 @@ struct AttitudeOptions {
 ///       columns: {time: 1, position: [2, 3, 4], velocity: [..], euler: [roll, pitch, yaw]}       # or quaternion: [x, y, z, w]
 ///       attitude_to: ned                   # or enu
 ///       body_axes: frd                     # or flu
-///       frame, utm_zone, origin_deg_m, height, geoid_height_m, gps_week, time: as under `gnss:`
+///       frame, utm_zone, origin_deg_m, height, geoid_height_m, gps_week, time, topic: as under `gnss:`
 ///
 /// SBET times are GPS seconds of week (some programs write UTC seconds of week: `time: {offset_s: 18}`).
 struct ReferenceFileOptions {
@@ -45,6 +45,7 @@ struct ReferenceFileOptions {
   AttitudeOptions attitude;
   PositionOptions position;
   TimeOptions time;
+  std::string topic;  ///< of a bag; empty: the only one with poses
 
   [[nodiscard]] static ReferenceFileOptions from(const config::Node& reference);
   /// A file given by name only (the command line of `coast compare`), with default options.

@@ -97,11 +97,25 @@ enum class WeekColumn { kWithout, kWith };
 /// IMU as CSV with the default header: mean rates over each interval.
 void write_imu_csv(const std::filesystem::path& path, const record::ImuRecording& imu, WeekColumn week = WeekColumn::kWithout);
 /// GNSS fixes as CSV with the default header, times with their week; velocities and numbers of satellites if every fix
-/// has them. Correlations between
-/// components are left out.
+/// has them. Correlations between components are left out.
 void write_gnss_csv(const std::filesystem::path& path, const record::GnssRecording& gnss);
 /// Time marks as CSV: gps_week, sow_s, sd_s (empty: not stated), channel, edge, count, id.
 void write_time_marks_csv(const std::filesystem::path& path, const record::TimeMarkRecording& marks);
+
+/// How write_mcap names and packs.
+struct McapOptions {
+  std::string imu_topic = "/imu";
+  std::string gnss_topic = "/fix";
+  bool compressed = true;  ///< chunks are LZ4 frames
+};
+/// A bag of ROS 2 as MCAP: the IMU as sensor_msgs/msg/Imu, mean rates and specific forces over each interval in the axes of the
+/// recording, without attitude; positions as sensor_msgs/msg/NavSatFix with their covariance. Stamps are POSIX times, to 1 ns.
+/// Not carried: temperatures, velocities, numbers of satellites; float and fixed ambiguities both become ground-based
+/// augmentation.
+/// @param imu, gnss  null: none
+/// @throws OutputError
+void write_mcap(const std::filesystem::path& path, const record::ImuRecording* imu, const record::GnssRecording* gnss,
+                const McapOptions& options = {});
 /// First component of an aiding sensor's samples as CSV: gps_week, sow_s and a column of that name.
 void write_aid_csv(const std::filesystem::path& path, const record::AidRecording& aid, std::string_view column);
 

@@ -8,6 +8,10 @@ namespace coast::io {
 [[nodiscard]] Format rtcm3_format();
 [[nodiscard]] Format ubx_format();
 [[nodiscard]] Format ulog_format();
+[[nodiscard]] Format rosbag_format();
+[[nodiscard]] Format mcap_format();
+[[nodiscard]] Format rosbag2_format();
+[[nodiscard]] Format dataflash_format();
 [[nodiscard]] Format vectornav_format();
 [[nodiscard]] Format waypoint_imr_format();
 [[nodiscard]] Format sbet_format();

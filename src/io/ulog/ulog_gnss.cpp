@@ -6,6 +6,8 @@
 #include <cmath>
 #include <cstdlib>
 
+#include "../boot_clock_imu.hpp"
+#include "../posix_time.hpp"
 #include "../receiver_positions.hpp"
 #include "coast/geo/units.hpp"
 #include "ulog_readers.hpp"
@@ -39,19 +41,15 @@ class UlogRow {
 };
 
 std::optional<geo::GpsTime> from_utc_microseconds(std::int64_t us) {
-  constexpr std::int64_t kMicro = 1'000'000;
-  constexpr std::int64_t kFirst = 946'684'800, kLast = 4'102'444'800;  // s: years 2000 to 2100
-  const std::int64_t seconds = us / kMicro;
-  if (seconds < kFirst || seconds > kLast) return std::nullopt;
-  // In two parts: a double of POSIX time has no digits for microseconds.
-  return geo::GpsTime::from_unix_utc(static_cast<double>(seconds)) + 1e-6 * static_cast<double>(us % kMicro);
+  constexpr std::int64_t kMicro = 1'000'000, kNanoseconds = 1'000;
+  return gps_from_posix(us / kMicro, kNanoseconds * (us % kMicro));
 }
 
 std::optional<UlogPosition> position_of(const UlogRow& row) {
   const auto boot = row.integer("timestamp");
   const auto latitude = row.renamed("latitude_deg", "lat", 1e-7), longitude = row.renamed("longitude_deg", "lon", 1e-7);
   const auto height = row.renamed("altitude_ellipsoid_m", "alt_ellipsoid", 1e-3);
-  if (!boot || *boot < 0 || *boot > kLongestUlogUptime || !latitude || !longitude || !height) return std::nullopt;
+  if (!boot || *boot < 0 || *boot > kLongestUptime || !latitude || !longitude || !height) return std::nullopt;
   UlogPosition p;
   constexpr std::int64_t kLargestDelay = 10'000'000;  // us; beyond, the field is not set
   const std::int64_t relative = row.integer("timestamp_time_relative").value_or(0);

@@ -10,9 +10,6 @@
 
 namespace coast::io {
 
-/// us; a hundred years. Damaged times beyond must not overflow in sums.
-inline constexpr std::int64_t kLongestUlogUptime = std::int64_t{3'200'000'000} * 1'000'000;
-
 /// One message of vehicle_gps_position or sensor_gps.
 struct UlogPosition {
   std::int64_t boot_us = 0;       ///< the autopilot's clock at which UTC was read
