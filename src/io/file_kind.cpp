@@ -7,6 +7,7 @@
 
 #include "coast/io/input.hpp"
 #include "coast/record/error.hpp"
+#include "sbf/sbf_blocks.hpp"
 #include "text.hpp"
 
 namespace coast::io {
@@ -37,10 +38,11 @@ std::optional<FileKind> binary_kind(std::string_view head) {
   if (head.starts_with("PK\x03\x04")) return FileKind{"a zip archive", "Unpack it and name the file inside."};
   if (head.size() > 262 && head.substr(257, 5) == "ustar")
     return FileKind{"a tar archive", "Unpack it and name the file inside."};
+  constexpr std::string_view kOfReceiver =
+      "It belongs under `gnss: {file: ..}`, `imu: {file: ..}`, or `gnss: {ppk: {rover: .., base: .., nav: [..]}}`.";
+  if (begins_as_sbf(head)) return FileKind{"an SBF file of a Septentrio receiver", std::string(kOfReceiver)};
   if (head.find("\xb5\x62") != std::string_view::npos)  // NMEA sentences may be between its messages
-    return FileKind{
-        "a UBX file of a u-blox receiver",
-        "It belongs under `gnss: {file: ..}`, `imu: {file: ..}`, or `gnss: {ppk: {rover: .., base: .., nav: [..]}}`."};
+    return FileKind{"a UBX file of a u-blox receiver", std::string(kOfReceiver)};
   return std::nullopt;
 }
 

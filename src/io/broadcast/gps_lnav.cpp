@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "../ephemerides.hpp"
+#include "accuracy.hpp"
 #include "bit_field.hpp"
 #include "coast/geo/units.hpp"
 
@@ -66,14 +67,6 @@ constexpr std::size_t word_at(std::size_t word) {
   return 24 * (word - 1);
 }
 
-/// Nominal value of the user range accuracy index, m.
-double accuracy_of(int index) {
-  constexpr int kTurn = 6;
-  // The values that the standard rounds: 2.8, 5.7, 11.3.
-  if (index <= kTurn) return std::round(10.0 * std::exp2(1.0 + 0.5 * index)) / 10.0;
-  return std::exp2(index - 2.0);
-}
-
 struct Issues {
   int clock = 0, orbit2 = 0, orbit3 = 0;
   [[nodiscard]] bool agree() const { return (clock & 0xff) == orbit2 && orbit2 == orbit3; }
@@ -90,7 +83,7 @@ void read_lnav_clock(const LnavData& subframe, geo::GpsTime now, record::KeplerE
   const BitField field(subframe);
   BitCursor head(field, word_at(3) + 10);  // after the week
   e.sources = head.integer(2);
-  e.accuracy_m = accuracy_of(head.integer(4));
+  e.accuracy_m = ura_metres(head.integer(4));
   e.health = head.integer(6);
   BitCursor tail(field, word_at(7) + 16);
   e.group_delay[0] = tail.signed_number(8, -31);

@@ -6,6 +6,7 @@
 namespace coast::io {
 
 [[nodiscard]] Format ubx_format();
+[[nodiscard]] Format sbf_format();
 [[nodiscard]] Format ulog_format();
 [[nodiscard]] Format vectornav_format();
 [[nodiscard]] Format waypoint_imr_format();

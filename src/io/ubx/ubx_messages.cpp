@@ -1,11 +1,8 @@
 #include "ubx_messages.hpp"
 
-#include <fmt/format.h>
-
-#include <algorithm>
+#include <array>
 #include <cmath>
 #include <stdexcept>
-#include <vector>
 
 #include "../binary.hpp"
 #include "../ephemerides.hpp"
@@ -17,12 +14,6 @@ namespace {
 constexpr double kUbxWeek = 604800.0;               // s
 constexpr int kLargestUbxWeek = 9999;               // beyond, not a week but damage that the checksum has missed
 constexpr std::uint32_t kLargestTow = 604'800'000;  // ms
-
-bool is_read(std::uint32_t id) {
-  constexpr std::array kRead = {ubx::kNavPvt,  ubx::kNavHpPosLlh, ubx::kNavTimeGps, ubx::kNavCov,  ubx::kRxmSfrbx,
-                                ubx::kRxmRawx, ubx::kMonVer,      ubx::kTimTm2,     ubx::kEsfMeas, ubx::kEsfRaw};
-  return std::ranges::find(kRead, id) != kRead.end();
-}
 
 std::optional<geo::GpsTime> week_and_second(int week, double sow) {
   if (week <= 0 || week > kLargestUbxWeek || !(sow >= 0.0 && sow < kUbxWeek)) return std::nullopt;
@@ -80,25 +71,9 @@ std::optional<geo::GpsTime> first_stated_time(const std::filesystem::path& file)
 }
 
 record::Events ubx_file_events(const FrameCensus& census, const std::string& file) {
-  record::Events events = census.events(file);
-  std::vector<std::pair<long, std::string>> unread;
-  long messages = 0;
-  for (const auto& [key, number] : census.frames) {
-    if (key.first == Protocol::kUbx && is_read(key.second)) continue;
-    unread.emplace_back(number, frame_name(key.first, key.second));
-    messages += number;
-  }
-  if (unread.empty()) return events;
-  std::ranges::stable_sort(unread, std::greater<>{}, [](const auto& one) { return one.first; });
-  constexpr std::size_t kNamed = 12;
-  std::string names;
-  for (std::size_t i = 0; i < std::min(kNamed, unread.size()); ++i)
-    names += fmt::format("{}{} {}", i == 0 ? "" : ", ", unread[i].first, unread[i].second);
-  if (unread.size() > kNamed) names += fmt::format(" and {} more kinds", unread.size() - kNamed);
-  events.push_back({record::Event::Severity::kInfo, "messages_not_read",
-                    fmt::format("{}: {} messages that coast does not read: {}", file, messages, names), std::nullopt,
-                    messages});
-  return events;
+  constexpr std::array kRead = {ubx::kNavPvt,  ubx::kNavHpPosLlh, ubx::kNavTimeGps, ubx::kNavCov,  ubx::kRxmSfrbx,
+                                ubx::kRxmRawx, ubx::kMonVer,      ubx::kTimTm2,     ubx::kEsfMeas, ubx::kEsfRaw};
+  return census.events(file, Protocol::kUbx, kRead);
 }
 
 bool begins_as_ubx(std::string_view head) {
