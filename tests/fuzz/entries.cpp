@@ -293,11 +293,20 @@ void both_of(std::string_view bytes, const char* format) {
   gnss(bytes, gnss_options);
 }
 
-void ubx(std::string_view bytes) {
-  both_of(bytes, "ubx");
+/// Everything that a format of receivers can hold.
+void all_of(std::string_view bytes, const char* format) {
+  both_of(bytes, format);
   rinex_observation(bytes);  // both by content
   rinex_navigation(bytes);
   read_and_check([&] { return io::read_time_marks(io::TimeMarkFileOptions::of_file(as_file(bytes))); });
+}
+
+void ubx(std::string_view bytes) {
+  all_of(bytes, "ubx");
+}
+
+void sbf(std::string_view bytes) {
+  all_of(bytes, "sbf");
 }
 
 void vectornav(std::string_view bytes) {
@@ -337,6 +346,7 @@ const std::vector<Entry>& entries() {
       {"reference", reference_auto},
       {"rinex_observation", rinex_observation},
       {"rinex_navigation", rinex_navigation},
+      {"sbf", sbf},
       {"sp3", sp3},
       {"rinex_clock", rinex_clock},
       {"antex", antex},

@@ -129,7 +129,8 @@ MessageUse SbfNavigationReader::decode_raw(std::uint32_t id, std::string_view pa
   if (!holds(0)) return MessageUse::kWrong;
   const auto byte = [&](std::size_t at) { return number_at<std::uint8_t>(payload, at); };
   const auto satellite = sbf_satellite(byte(kSbfBody));
-  if (!satellite || byte(kSbfBody + 1) == 0) return MessageUse::kWrong;
+  if (!satellite) return MessageUse::kNotUsed;  // of GLONASS before its slot is known
+  if (byte(kSbfBody + 1) == 0) return MessageUse::kWrong;
   if (id == sbf::kGpsRawCa || id == sbf::kQzsRawL1Ca) {
     if (!holds(kLnavWords) || (satellite->system != System::kGps && satellite->system != System::kQzss))
       return MessageUse::kWrong;
