@@ -1,6 +1,7 @@
 #include "ephemerides.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <tuple>
 
@@ -24,6 +25,10 @@ long drop_repeated(std::vector<Ephemeris>& all, const Key& key) {
 bool is_possible(const record::KeplerEphemeris& e) {
   constexpr double kLeastRoot = 2500.0;  // sqrt(m): below the surface
   constexpr double kMostRoot = 8000.0;   // 64 000 km
+  const std::array rest = {
+      e.clock[1], e.clock[2], e.mean_anomaly, e.delta_n, e.perigee, e.node, e.node_rate,  e.inclination,    e.inclination_rate,
+      e.cuc,      e.cus,      e.crc,          e.crs,     e.cic,     e.cis,  e.accuracy_m, e.group_delay[0], e.group_delay[1]};
+  if (!std::ranges::all_of(rest, [](double value) { return std::isfinite(value); })) return false;
   return e.eccentricity >= 0.0 && e.eccentricity < 0.5 && e.sqrt_a > kLeastRoot && e.sqrt_a < kMostRoot &&
          std::abs(e.clock[0]) < 1.0;
 }
@@ -33,7 +38,7 @@ bool is_possible(const record::TabulatedEphemeris& e) {
   constexpr double kFarthest = 6e7;  // m
   constexpr double kFastest = 1e4;   // m/s
   return e.r_e.norm() > kNearest && e.r_e.norm() < kFarthest && e.v_e.norm() < kFastest && e.a_e.norm() < 1.0 &&
-         std::abs(e.clock_bias) < 1.0;
+         std::abs(e.clock_bias) < 1.0 && std::isfinite(e.clock_drift);
 }
 
 geo::GpsTime nearest_second_of_week(geo::GpsTime to, double sow) {

@@ -5,7 +5,7 @@
 
 namespace coast::io {
 
-/// An orbit of a navigation satellite: above the ground, below 64 000 km, eccentricity below 0.5.
+/// An orbit of a navigation satellite: above the ground, below 64 000 km, eccentricity below 0.5, all elements finite.
 [[nodiscard]] bool is_possible(const record::KeplerEphemeris& ephemeris);
 [[nodiscard]] bool is_possible(const record::TabulatedEphemeris& ephemeris);
 

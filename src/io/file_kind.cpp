@@ -9,6 +9,7 @@
 #include "coast/io/input.hpp"
 #include "coast/record/error.hpp"
 #include "rtcm/rtcm_messages.hpp"
+#include "sbf/sbf_blocks.hpp"
 #include "text.hpp"
 
 namespace coast::io {
@@ -44,10 +45,11 @@ std::optional<FileKind> binary_kind(std::string_view head) {
     return FileKind{"a tar archive", "Unpack it and name the file inside."};
   if (begins_as_rtcm3(head))
     return FileKind{"an RTCM 3 file of a base station", "It belongs under `gnss: {ppk: {rover: .., base: .., nav: [..]}}`."};
+  constexpr std::string_view kOfReceiver =
+      "It belongs under `gnss: {file: ..}`, `imu: {file: ..}`, or `gnss: {ppk: {rover: .., base: .., nav: [..]}}`.";
+  if (begins_as_sbf(head)) return FileKind{"an SBF file of a Septentrio receiver", std::string(kOfReceiver)};
   if (head.find("\xb5\x62") != std::string_view::npos)  // NMEA sentences may be between its messages
-    return FileKind{
-        "a UBX file of a u-blox receiver",
-        "It belongs under `gnss: {file: ..}`, `imu: {file: ..}`, or `gnss: {ppk: {rover: .., base: .., nav: [..]}}`."};
+    return FileKind{"a UBX file of a u-blox receiver", std::string(kOfReceiver)};
   return std::nullopt;
 }
 

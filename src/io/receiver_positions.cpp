@@ -1,5 +1,6 @@
 #include "receiver_positions.hpp"
 
+#include <Eigen/Cholesky>
 #include <cmath>
 
 #include "coast/geo/units.hpp"
@@ -34,6 +35,11 @@ std::optional<Eigen::Matrix3d> position_covariance(double horizontal_sd, double 
 std::optional<Eigen::Matrix3d> velocity_covariance(double speed_sd) {
   if (!possible_sd(speed_sd, kLargestSpeedSd)) return std::nullopt;
   return Eigen::Matrix3d(speed_sd * speed_sd / 3.0 * Eigen::Matrix3d::Identity());
+}
+
+std::optional<Eigen::Matrix3d> covariance_if_positive(const Eigen::Matrix3d& cov) {
+  if (!cov.allFinite() || cov.llt().info() != Eigen::Success) return std::nullopt;
+  return cov;
 }
 
 bool ReceiverPositions::take(const ReceiverPosition& position) {

@@ -32,6 +32,8 @@ struct ReceiverPosition {
 [[nodiscard]] std::optional<Eigen::Matrix3d> position_covariance(double horizontal_sd, double vertical_sd);
 /// Likewise one accuracy of the speed for three components.
 [[nodiscard]] std::optional<Eigen::Matrix3d> velocity_covariance(double speed_sd);
+/// None for a matrix that is no covariance: not positive definite, not finite.
+[[nodiscard]] std::optional<Eigen::Matrix3d> covariance_if_positive(const Eigen::Matrix3d& cov);
 
 /// Takes the positions of a file in its order, with the standard deviations and the time offset that the options state.
 class ReceiverPositions {

@@ -293,8 +293,9 @@ void both_of(std::string_view bytes, const char* format) {
   gnss(bytes, gnss_options);
 }
 
-void ubx(std::string_view bytes) {
-  both_of(bytes, "ubx");
+/// Everything that a format of receivers can hold.
+void all_of(std::string_view bytes, const char* format) {
+  both_of(bytes, format);
   rinex_observation(bytes);  // both by content
   rinex_navigation(bytes);
   read_and_check([&] { return io::read_time_marks(io::TimeMarkFileOptions::of_file(as_file(bytes))); });
@@ -304,6 +305,14 @@ void rtcm(std::string_view bytes) {
   rinex_observation(bytes);  // both by content
   rinex_navigation(bytes);
   read_and_check([&] { return io::read_observations(as_file(bytes), geo::GpsTime::from_week(2244, 302400.0)); });
+}
+
+void ubx(std::string_view bytes) {
+  all_of(bytes, "ubx");
+}
+
+void sbf(std::string_view bytes) {
+  all_of(bytes, "sbf");
 }
 
 void vectornav(std::string_view bytes) {
@@ -370,6 +379,7 @@ const std::vector<Entry>& entries() {
       {"rtcm", rtcm},
       {"rinex_observation", rinex_observation},
       {"rinex_navigation", rinex_navigation},
+      {"sbf", sbf},
       {"sp3", sp3},
       {"rinex_clock", rinex_clock},
       {"antex", antex},

@@ -7,6 +7,7 @@
 
 #include "files.hpp"
 #include "receiver_messages.hpp"
+#include "sbf_messages.hpp"
 
 namespace coast::io {
 namespace {
@@ -300,6 +301,10 @@ std::vector<Spoiled> receiver_files() {
       {"UBX without positions", Kind::kGnss, version, "", "%: a UBX file without UBX-NAV-PVT"},
       {"UBX with a wrong checksum alone", Kind::kGnss, wrong, "format: ubx", "%: a UBX file without UBX-NAV-PVT"},
       {"text as UBX", Kind::kGnss, pos(), "format: ubx", "%: a UBX file without UBX-NAV-PVT"},
+      {"SBF without an IMU", Kind::kImu, test::sbf(4007, "ab"), "", "%: an SBF file without ExtSensorMeas"},
+      {"SBF without positions", Kind::kGnss, test::sbf(4082, "ab"), "", "%: an SBF file without PVTGeodetic"},
+      {"SBF of positions that are cut", Kind::kGnss, test::sbf(4007, "ab"), "", "%: an SBF file without PVTGeodetic"},
+      {"text as SBF", Kind::kGnss, pos(), "format: sbf", "%: an SBF file without PVTGeodetic"},
       {"VectorNav without a checksum", Kind::kImu, whole, "format: vectornav", "%: 0 IMU samples in VectorNav messages"},
       {"text as VectorNav", Kind::kGnss, pos(), "format: vectornav", "%: VectorNav messages without a position"},
       {"ULog without anything", Kind::kImu, ulog_head, "", "%: a flight log with 0 IMU samples"},
@@ -337,6 +342,7 @@ std::vector<Spoiled> event_files() {
       {"RINEX without observations", Kind::kEvents, rinex_header + "> 2021 09 22 06 30  0.0000000  5  0\n", "",
        "%:4: no epoch with observations"},
       {"UBX without marks", Kind::kEvents, test::ubx(0x0a, 0x04, std::string(40, ' ')), "", "%: no time mark"},
+      {"SBF without marks", Kind::kEvents, test::sbf(4007, "ab"), "", "%: no time mark"},
   };
 }
 

@@ -7,6 +7,7 @@ namespace coast::io {
 
 [[nodiscard]] Format rtcm3_format();
 [[nodiscard]] Format ubx_format();
+[[nodiscard]] Format sbf_format();
 [[nodiscard]] Format ulog_format();
 [[nodiscard]] Format rosbag_format();
 [[nodiscard]] Format mcap_format();

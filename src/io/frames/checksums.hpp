@@ -10,7 +10,7 @@ namespace coast::io {
 [[nodiscard]] std::uint16_t fletcher8(std::string_view bytes);
 /// CRC-24Q of RTCM 3 and Galileo I/NAV: polynomial 0x1864CFB, begins with 0.
 [[nodiscard]] std::uint32_t crc24q(std::string_view bytes);
-/// CRC-16 of VectorNav: CCITT polynomial 0x1021, begins with 0; 0 over a message with its CRC, high byte first.
+/// CRC-16 of VectorNav and SBF: CCITT polynomial 0x1021, begins with 0; 0 over a message with its CRC, high byte first.
 [[nodiscard]] std::uint16_t crc16_ccitt(std::string_view bytes);
 
 }  // namespace coast::io

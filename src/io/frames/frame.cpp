@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "../binary.hpp"
+#include "../sbf/sbf_names.hpp"
 #include "../vectornav/vectornav_message.hpp"
 #include "checksums.hpp"
 
@@ -59,7 +60,7 @@ std::uint32_t sentence_id(std::string_view content) {
 }  // namespace
 
 std::string_view name_of(Protocol protocol) {
-  static constexpr std::array<std::string_view, kProtocols> names = {"UBX", "NMEA", "RTCM", "VectorNav"};
+  static constexpr std::array<std::string_view, kProtocols> names = {"UBX", "NMEA", "RTCM", "VectorNav", "SBF"};
   return names.at(static_cast<std::size_t>(protocol));
 }
 
@@ -75,6 +76,8 @@ std::string frame_name(Protocol protocol, std::uint32_t id) {
                          static_cast<char>(id & 0xffU));
     case Protocol::kRtcm3:
       return fmt::format("RTCM {}", id);
+    case Protocol::kSbf:
+      return sbf_block_name(id);
     case Protocol::kVectorNav:
       break;
   }
@@ -86,7 +89,7 @@ std::string frame_name(Protocol protocol, std::uint32_t id) {
 FrameTrial try_ubx(std::string_view bytes) {
   constexpr std::size_t kHead = 6, kFrame = 8;
   // The longest message, RXM-RAWX of 255 signals, has 8176 bytes. A bound keeps false beginnings in garbage cheap.
-  constexpr std::size_t kLongestPayload = kLongestFrame - kFrame;
+  constexpr std::size_t kLongestPayload = 8192 - kFrame;
   if (bytes.size() >= 2 && bytes[1] != '\x62') return {};
   if (bytes.size() < kHead) return need(kHead);
   const std::size_t payload = number_at<std::uint16_t>(bytes, 4);
@@ -140,6 +143,22 @@ FrameTrial try_vectornav(std::string_view bytes) {
   if (bytes.size() < size) return need(size);
   if (crc16_ccitt(bytes.substr(kSync, message.size() + kCrc)) != 0) return {Verdict::kChecksum, 0, 0, 0, 0};
   return {Verdict::kFrame, size, message.groups(), kSync, message.size()};
+}
+
+/// '$', '@', CRC-16 of what follows it, number of the block with its revision in the upper three bits, length of the whole,
+/// then time and contents (mosaic-X5 reference guide 4.14.10, 4.1.1 and 4.1.12). The payload begins with the time.
+FrameTrial try_sbf(std::string_view bytes) {
+  constexpr std::size_t kHead = 8, kAfterCrc = 4;
+  constexpr std::size_t kShortest = 16;  // with the time, padded
+  constexpr std::uint32_t kNumber = 0x1fff;
+  if (bytes.size() >= 2 && bytes[1] != '@') return {};
+  if (bytes.size() < kHead) return need(kHead);
+  const std::size_t length = number_at<std::uint16_t>(bytes, 6);
+  if (length < kShortest || length % 4 != 0) return {};
+  if (bytes.size() < length) return need(length);
+  if (crc16_ccitt(bytes.substr(kAfterCrc, length - kAfterCrc)) != number_at<std::uint16_t>(bytes, 2))
+    return {Verdict::kChecksum, 0, 0, 0, 0};
+  return {Verdict::kFrame, length, number_at<std::uint16_t>(bytes, 4) & kNumber, kHead, length - kHead};
 }
 
 }  // namespace coast::io

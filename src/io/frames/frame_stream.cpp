@@ -81,8 +81,8 @@ std::vector<MessageCount> count_frames(const std::filesystem::path& file, std::s
   return counts;
 }
 
-FrameStream::FrameStream(const std::filesystem::path& file, std::span<const FrameKind> kinds) : window_(file) {
-  for (const FrameKind& kind : kinds) kind_of_.at(index_of(kind.first)) = &kind;
+FrameStream::FrameStream(const std::filesystem::path& file, std::span<const FrameKind> kinds) : window_(file), kinds_(kinds) {
+  for (const FrameKind& kind : kinds) begins_.at(index_of(kind.first)) = true;
 }
 
 bool FrameStream::next(MessageFrame& frame) {
@@ -93,17 +93,16 @@ bool FrameStream::next(MessageFrame& frame) {
       skip(bytes);
       continue;
     }
-    const FrameKind& kind = *kind_of_[index_of(ahead.front())];
-    const FrameTrial trial = try_here(ahead);
+    const auto [protocol, trial] = try_here(ahead);
     if (trial.verdict == Verdict::kFrame) {
-      frame = {kind.protocol, trial.id, ahead.substr(trial.payload_at, trial.payload_size), window_.position()};
-      count(kind.protocol, trial.id);
+      frame = {protocol, trial.id, ahead.substr(trial.payload_at, trial.payload_size), window_.position()};
+      count(protocol, trial.id);
       cut_from_ = 0;
       window_.advance(trial.size);
       return true;
     }
     if (trial.verdict == Verdict::kChecksum) {
-      FrameCensus::Bad& bad = census_.bad_checksums.at(static_cast<std::size_t>(kind.protocol));
+      FrameCensus::Bad& bad = census_.bad_checksums.at(static_cast<std::size_t>(protocol));
       if (bad.number++ == 0) bad.first = window_.position();
     }
     if (trial.verdict == Verdict::kMore && cut_from_ == 0) cut_from_ = window_.position() + 1;
@@ -114,8 +113,17 @@ bool FrameStream::next(MessageFrame& frame) {
 }
 
 /// The verdict on the bytes at the position; kMore only at the end of the file.
-FrameTrial FrameStream::try_here(std::string_view& ahead) {
-  const FrameRule rule = kind_of_[index_of(ahead.front())]->rule;
+FrameStream::Tried FrameStream::try_here(std::string_view& ahead) {
+  Tried tried{};
+  for (const FrameKind& kind : kinds_) {
+    if (kind.first != ahead.front()) continue;
+    tried = {kind.protocol, try_rule(kind.rule, ahead)};
+    if (tried.trial.verdict != Verdict::kNone) break;
+  }
+  return tried;
+}
+
+FrameTrial FrameStream::try_rule(FrameRule rule, std::string_view& ahead) {
   while (true) {
     const FrameTrial trial = rule(ahead);
     if (trial.verdict != Verdict::kMore) return trial;
@@ -128,7 +136,7 @@ FrameTrial FrameStream::try_here(std::string_view& ahead) {
 /// Number of bytes ahead that begin no frame.
 std::size_t FrameStream::garbage(std::string_view ahead) const {
   std::size_t bytes = 0;
-  while (bytes < ahead.size() && kind_of_[index_of(ahead[bytes])] == nullptr) ++bytes;
+  while (bytes < ahead.size() && !begins_[index_of(ahead[bytes])]) ++bytes;
   return bytes;
 }
 

@@ -49,13 +49,19 @@ class FrameStream {
   [[nodiscard]] const std::string& name() const { return window_.name(); }
 
  private:
-  [[nodiscard]] FrameTrial try_here(std::string_view& ahead);
+  struct Tried {
+    Protocol protocol;
+    FrameTrial trial;
+  };
+  [[nodiscard]] Tried try_here(std::string_view& ahead);
+  [[nodiscard]] FrameTrial try_rule(FrameRule rule, std::string_view& ahead);
   [[nodiscard]] std::size_t garbage(std::string_view ahead) const;
   void skip(std::size_t bytes);
   void count(Protocol protocol, std::uint32_t id);
 
   ByteWindow window_;
-  std::array<const FrameKind*, 256> kind_of_{};  ///< by first byte; null: none begins so
+  std::span<const FrameKind> kinds_;
+  std::array<bool, 256> begins_{};             ///< by byte: frames of some kind begin so
   std::uint64_t cut_from_ = 0;                 ///< first frame since the last whole one that ends beyond the file; position + 1
   std::pair<Protocol, std::uint32_t> last_{};  ///< counted last, with its place in the census
   long* last_count_ = nullptr;

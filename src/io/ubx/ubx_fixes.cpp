@@ -3,7 +3,6 @@
 
 #include <fmt/format.h>
 
-#include <Eigen/Cholesky>
 #include <cmath>
 
 #include "../binary.hpp"
@@ -87,14 +86,9 @@ Eigen::Matrix3d triangle_at(std::string_view b, std::size_t at) {
   return cov;
 }
 
-std::optional<Eigen::Matrix3d> positive(const Eigen::Matrix3d& cov) {
-  if (!cov.allFinite() || cov.llt().info() != Eigen::Success) return std::nullopt;
-  return cov;
-}
-
 void take_covariances(std::string_view b, UbxEpoch& epoch) {
-  if (b[5] != 0) epoch.position_cov_n = positive(triangle_at(b, 16));
-  if (b[6] != 0) epoch.velocity_cov_n = positive(triangle_at(b, 40));
+  if (b[5] != 0) epoch.position_cov_n = covariance_if_positive(triangle_at(b, 16));
+  if (b[6] != 0) epoch.velocity_cov_n = covariance_if_positive(triangle_at(b, 40));
 }
 
 class UbxFixReader {

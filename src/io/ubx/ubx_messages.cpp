@@ -15,12 +15,6 @@ constexpr double kUbxWeek = 604800.0;               // s
 constexpr int kLargestUbxWeek = 9999;               // beyond, not a week but damage that the checksum has missed
 constexpr std::uint32_t kLargestTow = 604'800'000;  // ms
 
-bool is_read(std::uint32_t id) {
-  constexpr std::array kRead = {ubx::kNavPvt,  ubx::kNavHpPosLlh, ubx::kNavTimeGps, ubx::kNavCov,  ubx::kRxmSfrbx,
-                                ubx::kRxmRawx, ubx::kMonVer,      ubx::kTimTm2,     ubx::kEsfMeas, ubx::kEsfRaw};
-  return std::ranges::find(kRead, id) != kRead.end();
-}
-
 std::optional<geo::GpsTime> week_and_second(int week, double sow) {
   if (week <= 0 || week > kLargestUbxWeek || !(sow >= 0.0 && sow < kUbxWeek)) return std::nullopt;
   return geo::GpsTime::from_week(week, sow);

@@ -7,6 +7,7 @@
 
 #include "../binary.hpp"
 #include "../counted.hpp"
+#include "../observation_rows.hpp"
 #include "ubx_messages.hpp"
 #include "ubx_readers.hpp"
 #include "ubx_signals.hpp"
@@ -80,15 +81,14 @@ class RawxReader {
   void take_epoch(std::string_view payload);
   void take_block(const RawxBlock& block, geo::GpsTime t);
   [[nodiscard]] bool lost_lock(const RawxBlock& block, const Observation& observation, geo::GpsTime t);
-  void keep_epoch(geo::GpsTime t);
   [[noreturn]] void refuse() const;
   void report();
 
   FrameStream stream_;
   record::ObservationRecording recording_;
-  std::vector<Observation> row_;
+  ObservationRows rows_{recording_};
   std::map<std::pair<record::Satellite, record::Signal>, SignalLock> locks_;
-  Counted spoiled_, no_time_, empty_, unknown_, impossible_, doubled_, repeated_, reversed_, clock_resets_;
+  Counted spoiled_, no_time_, unknown_, impossible_, clock_resets_;
 };
 
 /// MON-VER: software and hardware version, then extensions of 30 bytes, of which one names the module.
@@ -108,16 +108,12 @@ void RawxReader::take_epoch(std::string_view payload) {
   if (payload.size() < kRawxHead) return spoiled_.add();
   const std::size_t blocks = number_at<std::uint8_t>(payload, 11);
   if (payload.size() != kRawxHead + blocks * kRawxBlock) return spoiled_.add();
-  if (blocks == 0) return empty_.add();
   const auto t = rawx_time(payload);
   if (!t) return no_time_.add();
   if ((number_at<std::uint8_t>(payload, 12) & kClockReset) != 0) clock_resets_.add(*t);
-  const auto& epochs = recording_.epochs;
-  if (!epochs.empty() && *t == epochs.back().t) return repeated_.add(*t);
-  if (!epochs.empty() && *t < epochs.back().t) return reversed_.add(*t);
-  row_.clear();
+  if (!rows_.begin(*t)) return;
   for (std::size_t i = 0; i < blocks; ++i) take_block(RawxBlock(payload.substr(kRawxHead + i * kRawxBlock, kRawxBlock)), *t);
-  keep_epoch(*t);
+  rows_.end();
 }
 
 void RawxReader::take_block(const RawxBlock& block, geo::GpsTime t) {
@@ -126,8 +122,7 @@ void RawxReader::take_block(const RawxBlock& block, geo::GpsTime t) {
   const auto satellite = ubx_satellite(block.gnss, block.sv);
   const auto signal = satellite ? ubx_signal(satellite->system, block.signal) : std::nullopt;
   if (!signal) return unknown_.add(t);
-  const auto same = [&](const Observation& o) { return o.satellite == *satellite && o.signal == *signal; };
-  if (std::ranges::any_of(row_, same)) return doubled_.add(t);
+  if (!rows_.is_new(*satellite, *signal)) return;
   Observation o;
   o.satellite = *satellite;
   o.signal = *signal;
@@ -143,7 +138,7 @@ void RawxReader::take_block(const RawxBlock& block, geo::GpsTime t) {
   o.lost_lock = lost_lock(block, o, t);
   if (satellite->system == record::SatelliteSystem::kGlonass && block.frequency < kChannels)
     recording_.glonass_channels[satellite->number] = block.frequency - kChannelOffset;
-  if (o.code_m || o.phase_cycles) row_.push_back(o);
+  rows_.add(o);
 }
 
 /// The phase is continuous since the signal was last seen if it has been locked for at least as long. The time of lock is cut
@@ -158,12 +153,6 @@ bool RawxReader::lost_lock(const RawxBlock& block, const Observation& o, geo::Gp
   lock.half_cycle_subtracted = block.half_cycle_subtracted();
   if (!o.phase_cycles) return false;
   return std::exchange(lock.slip_waits, false);
-}
-
-void RawxReader::keep_epoch(geo::GpsTime t) {
-  if (row_.empty()) return empty_.add(t);
-  std::ranges::stable_sort(row_, {}, [](const Observation& o) { return std::pair(o.satellite, o.signal); });
-  recording_.epochs.push_back({t, row_});
 }
 
 void RawxReader::refuse() const {
@@ -185,15 +174,11 @@ void RawxReader::report() {
   };
   add(spoiled_, "rawx_spoiled", "epoch", "epochs", "whose length contradicts the number of signals left out", Grade::kWarning);
   add(no_time_, "rawx_no_time", "epoch", "epochs", "before the receiver knew the week left out", Grade::kInfo);
-  add(empty_, "rawx_empty", "epoch", "epochs", "without a signal left out", Grade::kInfo);
   add(unknown_, "rawx_unknown_signal", "measurement", "measurements", "of an unknown satellite or signal left out",
       Grade::kInfo);
   add(impossible_, "rawx_impossible", "measurement", "measurements", "that no receiver measures left out", Grade::kWarning);
-  add(doubled_, "rawx_repeated_signal", "measurement", "measurements", "of a signal that the epoch has already left out",
-      Grade::kWarning);
-  add(repeated_, "rawx_repeated_epoch", "epoch", "epochs", "with the time of the one before left out", Grade::kWarning);
-  add(reversed_, "rawx_reversed_epoch", "epoch", "epochs", "earlier than the one before left out", Grade::kWarning);
   add(clock_resets_, "rawx_clock_reset", "reset", "resets", "of the receiver's clock", Grade::kInfo);
+  rows_.report("rawx");
 }
 
 }  // namespace
