@@ -7,8 +7,8 @@ namespace coast::io {
 
 const std::vector<Format>& formats() {
   static const std::vector<Format> table = {
-      ubx_format(),        vectornav_format(), ulog_format(),    waypoint_imr_format(), sbet_format(),
-      rtklib_pos_format(), nav_format(),       kf_gins_format(), csv_format(),          binary_format(),
+      ubx_format(),        vectornav_format(), ulog_format(),    novatel_format(), waypoint_imr_format(), sbet_format(),
+      rtklib_pos_format(), nav_format(),       kf_gins_format(), csv_format(),     binary_format(),
   };
   return table;
 }

@@ -50,14 +50,6 @@ InavWord word_of(const BitField& page) {
   return writer.bytes();
 }
 
-/// Table 89: signal-in-space accuracy, m; 0 where the satellite gives none.
-double sisa_of(int index) {
-  if (index < 50) return 0.01 * index;
-  if (index < 75) return 0.5 + 0.02 * (index - 50);
-  if (index < 100) return 1.0 + 0.04 * (index - 75);
-  return index <= 125 ? 2.0 + 0.16 * (index - 100) : 0.0;
-}
-
 constexpr std::size_t kAfterIssue = 16;  // type and IODnav
 
 /// Tables 42 to 45; angles are in semicircles.
@@ -81,7 +73,7 @@ void read_inav_orbit(const std::array<InavWord, 5>& words, geo::GpsTime now, rec
   e.cus = c.signed_number(16, -29);
   e.crc = c.signed_number(16, -5);
   e.crs = c.signed_number(16, -5);
-  e.accuracy_m = sisa_of(c.integer(8));
+  e.accuracy_m = galileo_accuracy(c.integer(8));
   BitCursor d(four, kAfterIssue + 6);  // after the satellite's number
   e.cic = d.signed_number(16, -29);
   e.cis = d.signed_number(16, -29);
@@ -107,6 +99,13 @@ int inav_week(geo::GpsTime t) {
 }
 
 }  // namespace
+
+double galileo_accuracy(int index) {
+  if (index < 50) return 0.01 * index;
+  if (index < 75) return 0.5 + 0.02 * (index - 50);
+  if (index < 100) return 1.0 + 0.04 * (index - 75);
+  return index <= 125 ? 2.0 + 0.16 * (index - 100) : 0.0;
+}
 
 MessageUse InavDecoder::take(record::Satellite satellite, std::span<const std::uint8_t, 32> page, geo::GpsTime now,
                              record::NavigationRecording& into) {

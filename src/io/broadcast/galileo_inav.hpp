@@ -10,6 +10,9 @@
 
 namespace coast::io {
 
+/// Table 89: signal-in-space accuracy by its index, m; 0 where the satellite gives none.
+[[nodiscard]] double galileo_accuracy(int index);
+
 /// Collects pages of all satellites; E1-B and E5b-I send the same words.
 class InavDecoder {
  public:

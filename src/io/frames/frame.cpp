@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "../binary.hpp"
+#include "../novatel/novatel_names.hpp"
 #include "../vectornav/vectornav_message.hpp"
 #include "checksums.hpp"
 
@@ -59,7 +60,8 @@ std::uint32_t sentence_id(std::string_view content) {
 }  // namespace
 
 std::string_view name_of(Protocol protocol) {
-  static constexpr std::array<std::string_view, kProtocols> names = {"UBX", "NMEA", "RTCM", "VectorNav"};
+  static constexpr std::array<std::string_view, kProtocols> names = {"UBX",       "NMEA",    "RTCM",
+                                                                     "VectorNav", "NovAtel", "NovAtel ASCII"};
   return names.at(static_cast<std::size_t>(protocol));
 }
 
@@ -76,9 +78,13 @@ std::string frame_name(Protocol protocol, std::uint32_t id) {
     case Protocol::kRtcm3:
       return fmt::format("RTCM {}", id);
     case Protocol::kVectorNav:
+      return fmt::format("VectorNav 0x{:02X}", id);
+    case Protocol::kNovAtel:
+    case Protocol::kNovAtelAscii:
       break;
   }
-  return fmt::format("VectorNav 0x{:02X}", id);
+  const std::string_view name = novatel_log_name(id);
+  return name.empty() ? fmt::format("{} {}", name_of(protocol), id) : fmt::format("{} {}", name_of(protocol), name);
 }
 
 /// Sync 0xB5 0x62, class, id, length of the payload, payload, checksum over class to payload (u-blox F9 interface description,
@@ -86,7 +92,7 @@ std::string frame_name(Protocol protocol, std::uint32_t id) {
 FrameTrial try_ubx(std::string_view bytes) {
   constexpr std::size_t kHead = 6, kFrame = 8;
   // The longest message, RXM-RAWX of 255 signals, has 8176 bytes. A bound keeps false beginnings in garbage cheap.
-  constexpr std::size_t kLongestPayload = kLongestFrame - kFrame;
+  constexpr std::size_t kLongestPayload = 8184;
   if (bytes.size() >= 2 && bytes[1] != '\x62') return {};
   if (bytes.size() < kHead) return need(kHead);
   const std::size_t payload = number_at<std::uint16_t>(bytes, 4);

@@ -47,6 +47,27 @@ record::Events FrameCensus::events(const std::string& file) const {
   return events;
 }
 
+void add_unread(record::Events& events, const std::string& file, const FrameCensus& census,
+                bool (*is_read)(Protocol protocol, std::uint32_t id)) {
+  std::vector<std::pair<long, std::string>> unread;
+  long messages = 0;
+  for (const auto& [key, number] : census.frames) {
+    if (is_read(key.first, key.second)) continue;
+    unread.emplace_back(number, frame_name(key.first, key.second));
+    messages += number;
+  }
+  if (unread.empty()) return;
+  std::ranges::stable_sort(unread, std::greater<>{}, [](const auto& one) { return one.first; });
+  constexpr std::size_t kNamed = 12;
+  std::string names;
+  for (std::size_t i = 0; i < std::min(kNamed, unread.size()); ++i)
+    names += fmt::format("{}{} {}", i == 0 ? "" : ", ", unread[i].first, unread[i].second);
+  if (unread.size() > kNamed) names += fmt::format(" and {} more kinds", unread.size() - kNamed);
+  events.push_back({record::Event::Severity::kInfo, "messages_not_read",
+                    fmt::format("{}: {} messages that coast does not read: {}", file, messages, names), std::nullopt,
+                    messages});
+}
+
 std::vector<MessageCount> count_frames(const std::filesystem::path& file, std::span<const FrameKind> kinds) {
   FrameStream stream(file, kinds);
   MessageFrame frame;

@@ -29,6 +29,10 @@ struct FrameCensus {
   [[nodiscard]] record::Events events(const std::string& file) const;
 };
 
+/// Adds an event on the messages that no reader uses, by name and number, if there are any.
+void add_unread(record::Events& events, const std::string& file, const FrameCensus& census,
+                bool (*is_read)(Protocol protocol, std::uint32_t id));
+
 /// Number of frames by kind in a whole file, the most frequent first.
 [[nodiscard]] std::vector<MessageCount> count_frames(const std::filesystem::path& file, std::span<const FrameKind> kinds);
 

@@ -1,11 +1,8 @@
 #include "ubx_messages.hpp"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
-#include <vector>
 
 #include "../binary.hpp"
 #include "../ephemerides.hpp"
@@ -81,23 +78,8 @@ std::optional<geo::GpsTime> first_stated_time(const std::filesystem::path& file)
 
 record::Events ubx_file_events(const FrameCensus& census, const std::string& file) {
   record::Events events = census.events(file);
-  std::vector<std::pair<long, std::string>> unread;
-  long messages = 0;
-  for (const auto& [key, number] : census.frames) {
-    if (key.first == Protocol::kUbx && is_read(key.second)) continue;
-    unread.emplace_back(number, frame_name(key.first, key.second));
-    messages += number;
-  }
-  if (unread.empty()) return events;
-  std::ranges::stable_sort(unread, std::greater<>{}, [](const auto& one) { return one.first; });
-  constexpr std::size_t kNamed = 12;
-  std::string names;
-  for (std::size_t i = 0; i < std::min(kNamed, unread.size()); ++i)
-    names += fmt::format("{}{} {}", i == 0 ? "" : ", ", unread[i].first, unread[i].second);
-  if (unread.size() > kNamed) names += fmt::format(" and {} more kinds", unread.size() - kNamed);
-  events.push_back({record::Event::Severity::kInfo, "messages_not_read",
-                    fmt::format("{}: {} messages that coast does not read: {}", file, messages, names), std::nullopt,
-                    messages});
+  add_unread(events, file, census,
+             [](Protocol protocol, std::uint32_t id) { return protocol == Protocol::kUbx && is_read(id); });
   return events;
 }
 
