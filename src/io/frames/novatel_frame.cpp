@@ -75,9 +75,9 @@ FrameTrial try_novatel_ascii(std::string_view bytes) {
   const std::size_t least = end + (bytes.size() > end && bytes[end] == '\r' ? kLineEnd : 1);
   if (bytes.size() < least) return need_novatel(least);
   std::uint32_t stated = 0;
-  const char* first = bytes.data() + star + 1;
-  const auto [last, error] = std::from_chars(first, first + kDigits, stated, 16);
-  if (error != std::errc() || last != first + kDigits || (bytes[end] != '\r' && bytes[end] != '\n')) return {};
+  const std::string_view digits = bytes.substr(star + 1, kDigits);
+  const auto [last, error] = std::from_chars(digits.data(), digits.data() + digits.size(), stated, 16);
+  if (error != std::errc() || last != digits.data() + digits.size() || (bytes[end] != '\r' && bytes[end] != '\n')) return {};
   if (crc32_novatel(content) != stated) return {Verdict::kChecksum, 0, 0, 0, 0};
   return {Verdict::kFrame, least, novatel_log_id(log_name_of(content)), 0, star};
 }

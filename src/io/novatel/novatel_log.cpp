@@ -31,7 +31,7 @@ constexpr std::array<NovAtelWord, 12> kTimeStatus = {{{"UNKNOWN", 20},
 std::optional<NovAtelLog> binary_log(std::string_view b) {
   constexpr std::size_t kShortHead = 12;
   constexpr double kMillisecond = 1e-3;
-  constexpr unsigned kResponse = 0x80, kSource = 0x1f;
+  constexpr unsigned kResponse = 0x80, kSource = 0x1f, kSecond = 1;
   NovAtelLog log;
   log.id = number_at<std::uint16_t>(b, 4);
   if (b[2] == '\x13') {
@@ -42,7 +42,7 @@ std::optional<NovAtelLog> binary_log(std::string_view b) {
   }
   const unsigned type = number_at<std::uint8_t>(b, 6);
   if ((type & kResponse) != 0) return std::nullopt;
-  log.second_antenna = (type & kSource) != 0;
+  log.second_antenna = (type & kSource) == kSecond;  // 2 is seen in logs of OEMV, which had one antenna
   log.time_status = number_at<std::uint8_t>(b, 13);
   log.week = number_at<std::uint16_t>(b, 14);
   log.seconds = kMillisecond * number_at<std::int32_t>(b, 16);
@@ -111,6 +111,34 @@ T NovAtelFields::integer(int base) {
   const auto [end, error] = std::from_chars(field.data(), field.data() + field.size(), value, base);
   if (error != std::errc() || end != field.data() + field.size() || field.empty()) good_ = false;
   return good_ ? value : T{};
+}
+
+double NovAtelFields::f64() {
+  return real<double>();
+}
+double NovAtelFields::f32() {
+  return static_cast<double>(real<float>());
+}
+std::int32_t NovAtelFields::i32() {
+  return integer<std::int32_t>(kDecimal);
+}
+std::uint32_t NovAtelFields::u32() {
+  return integer<std::uint32_t>(kDecimal);
+}
+std::uint16_t NovAtelFields::u16() {
+  return integer<std::uint16_t>(kDecimal);
+}
+std::int16_t NovAtelFields::i16() {
+  return integer<std::int16_t>(kDecimal);
+}
+std::uint8_t NovAtelFields::u8() {
+  return integer<std::uint8_t>(kDecimal);
+}
+std::uint32_t NovAtelFields::hex32() {
+  return integer<std::uint32_t>(kHexadecimal);
+}
+std::uint8_t NovAtelFields::hex8() {
+  return integer<std::uint8_t>(kHexadecimal);
 }
 
 std::uint32_t NovAtelFields::word(std::span<const NovAtelWord> words) {

@@ -28,16 +28,16 @@ class NovAtelFields {
  public:
   NovAtelFields(std::string_view body, bool ascii) : body_(body), ascii_(ascii) {}
 
-  [[nodiscard]] double f64() { return real<double>(); }
-  [[nodiscard]] double f32() { return static_cast<double>(real<float>()); }
-  [[nodiscard]] std::int32_t i32() { return integer<std::int32_t>(kDecimal); }
-  [[nodiscard]] std::uint32_t u32() { return integer<std::uint32_t>(kDecimal); }
-  [[nodiscard]] std::uint16_t u16() { return integer<std::uint16_t>(kDecimal); }
-  [[nodiscard]] std::int16_t i16() { return integer<std::int16_t>(kDecimal); }
-  [[nodiscard]] std::uint8_t u8() { return integer<std::uint8_t>(kDecimal); }
+  [[nodiscard]] double f64();
+  [[nodiscard]] double f32();
+  [[nodiscard]] std::int32_t i32();
+  [[nodiscard]] std::uint32_t u32();
+  [[nodiscard]] std::uint16_t u16();
+  [[nodiscard]] std::int16_t i16();
+  [[nodiscard]] std::uint8_t u8();
   /// Hexadecimal in ASCII.
-  [[nodiscard]] std::uint32_t hex32() { return integer<std::uint32_t>(kHexadecimal); }
-  [[nodiscard]] std::uint8_t hex8() { return integer<std::uint8_t>(kHexadecimal); }
+  [[nodiscard]] std::uint32_t hex32();
+  [[nodiscard]] std::uint8_t hex8();
   /// Words of ASCII that are not listed are `kUnknownWord`.
   [[nodiscard]] std::uint32_t word(std::span<const NovAtelWord> words);
   [[nodiscard]] Eigen::Vector3d vector();
