@@ -7,9 +7,9 @@ namespace coast::io {
 
 const std::vector<Format>& formats() {
   static const std::vector<Format> table = {
-      sbf_format(), rosbag_format(),    mcap_format(), rosbag2_format(),      dataflash_format(), rtcm3_format(),
-      ubx_format(), vectornav_format(), ulog_format(), waypoint_imr_format(), sbet_format(),      rtklib_pos_format(),
-      nav_format(), kf_gins_format(),   csv_format(),  binary_format(),
+      novatel_format(),    sbf_format(), rosbag_format(),    mcap_format(), rosbag2_format(),      dataflash_format(),
+      rtcm3_format(),      ubx_format(), vectornav_format(), ulog_format(), waypoint_imr_format(), sbet_format(),
+      rtklib_pos_format(), nav_format(), kf_gins_format(),   csv_format(),  binary_format(),
   };
   return table;
 }

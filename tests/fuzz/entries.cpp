@@ -319,6 +319,14 @@ void vectornav(std::string_view bytes) {
   both_of(bytes, "vectornav");
 }
 
+void novatel(std::string_view bytes) {
+  both_of(bytes, "novatel");
+  reference_auto(bytes);
+  rinex_observation(bytes);  // both by content
+  rinex_navigation(bytes);
+  read_and_check([&] { return io::read_time_marks(io::TimeMarkFileOptions::of_file(as_file(bytes))); });
+}
+
 void ulog(std::string_view bytes) {
   both_of(bytes, "ulog");
 }
@@ -385,6 +393,7 @@ const std::vector<Entry>& entries() {
       {"antex", antex},
       {"member_blocks", member_blocks},
       {"noise_levels", noise_levels},
+      {"novatel", novatel},
       {"packets", packets},
       {"dataflash", dataflash},
       {"mcap", mcap},

@@ -33,7 +33,8 @@ TEST(FuzzCorpus, EveryFileIsReadOrRefused) {
 TEST(FuzzCorpus, FilesOfReceiversAreReadOrRefusedCutOrSpoiled) {
   constexpr std::size_t kStep = 5;  // of the places tried; no field is a multiple of it long throughout
   for (const Entry& entry : entries()) {
-    constexpr std::array kOfMessages = {"ubx", "vectornav", "ulog", "rosbag", "mcap", "rosbag2", "dataflash", "rtcm", "sbf"};
+    constexpr std::array kOfMessages = {"ubx",     "vectornav", "ulog", "rosbag", "mcap",
+                                        "rosbag2", "dataflash", "rtcm", "sbf",    "novatel"};
     if (std::ranges::find(kOfMessages, entry.name) == kOfMessages.end()) continue;
     for (const auto& file : std::filesystem::directory_iterator(kCorpus / entry.name)) {
       std::ifstream stream(file.path(), std::ios::binary);

@@ -6,6 +6,7 @@
 #include <cstring>
 
 #include "files.hpp"
+#include "novatel_messages.hpp"
 #include "receiver_messages.hpp"
 #include "sbf_messages.hpp"
 
@@ -296,6 +297,7 @@ std::vector<Spoiled> receiver_files() {
   const std::string ulog_head("ULog\x01\x12\x35\x01\0\0\0\0\0\0\0\0", 16);
   const std::string vectornav = "\xfa\x02" + test::Bytes().u2(1U << 9).u1(7).str();
   const std::string whole = vectornav + test::Bytes().u2(0).str();
+  const std::string novatel = test::novatel_ascii("VERSIONA", test::NovAtelBody().u32(0));
   return {
       {"UBX without an IMU", Kind::kImu, version, "", "%: a UBX file without UBX-ESF-RAW and UBX-ESF-MEAS"},
       {"UBX without positions", Kind::kGnss, version, "", "%: a UBX file without UBX-NAV-PVT"},
@@ -307,6 +309,10 @@ std::vector<Spoiled> receiver_files() {
       {"text as SBF", Kind::kGnss, pos(), "format: sbf", "%: an SBF file without PVTGeodetic"},
       {"VectorNav without a checksum", Kind::kImu, whole, "format: vectornav", "%: 0 IMU samples in VectorNav messages"},
       {"text as VectorNav", Kind::kGnss, pos(), "format: vectornav", "%: VectorNav messages without a position"},
+      {"NovAtel logs without an IMU", Kind::kImu, novatel, "", "%: 0 IMU samples in NovAtel logs"},
+      {"NovAtel logs without positions", Kind::kGnss, novatel, "", "%: NovAtel logs without BESTGNSSPOS"},
+      {"NovAtel logs without a trajectory", Kind::kReference, novatel, "", "%: NovAtel logs without INSPVA"},
+      {"text as NovAtel", Kind::kGnss, pos(), "format: novatel", "%: NovAtel logs without BESTGNSSPOS"},
       {"ULog without anything", Kind::kImu, ulog_head, "", "%: a flight log with 0 IMU samples"},
       {"ULog without positions", Kind::kGnss, ulog_head, "", "%: a flight log without positions"},
       {"ULog cut in its header", Kind::kImu, ulog_head.substr(0, 12), "", "%: the header is cut off"},

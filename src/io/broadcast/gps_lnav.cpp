@@ -134,10 +134,14 @@ std::optional<record::Klobuchar> ionosphere_of(const LnavData& subframe) {
 
 MessageUse LnavDecoder::take(record::Satellite satellite, std::span<const std::uint32_t> words, geo::GpsTime now,
                              record::NavigationRecording& into) {
+  if (words.size() != kLnavWords || !parities_hold(words)) return MessageUse::kWrong;
+  return take_data(satellite, data_of(words), now, into);
+}
+
+MessageUse LnavDecoder::take_data(record::Satellite satellite, const std::array<std::uint8_t, 30>& data, geo::GpsTime now,
+                                  record::NavigationRecording& into) {
   constexpr std::uint32_t kPreamble = 0x8b;
   constexpr int kWeeks = 1024;
-  if (words.size() != kLnavWords || !parities_hold(words)) return MessageUse::kWrong;
-  const LnavData data = data_of(words);
   const BitField field(data);
   if (field.bits(0, 8) != kPreamble) return MessageUse::kWrong;
   const std::uint32_t number = field.bits(word_at(2) + 19, 3);

@@ -17,6 +17,9 @@ class LnavDecoder {
   /// @param now    GPS time to some hours
   MessageUse take(record::Satellite satellite, std::span<const std::uint32_t> words, geo::GpsTime now,
                   record::NavigationRecording& into);
+  /// @param data  the 24 data bits of each word, for receivers that have checked the parity and leave it out
+  MessageUse take_data(record::Satellite satellite, const std::array<std::uint8_t, 30>& data, geo::GpsTime now,
+                       record::NavigationRecording& into);
 
  private:
   struct Subframes {

@@ -16,6 +16,7 @@ namespace coast::io {
 [[nodiscard]] Format vectornav_format();
 [[nodiscard]] Format waypoint_imr_format();
 [[nodiscard]] Format sbet_format();
+[[nodiscard]] Format novatel_format();
 [[nodiscard]] Format rtklib_pos_format();
 [[nodiscard]] Format nav_format();
 [[nodiscard]] Format kf_gins_format();

@@ -49,4 +49,20 @@ std::uint16_t crc16_ccitt(std::string_view bytes) {
   return static_cast<std::uint16_t>(crc_of<16>(bytes, table));
 }
 
+std::uint32_t crc32_novatel(std::string_view bytes) {
+  static constexpr auto table = [] {
+    constexpr std::uint32_t kReflected = 0xEDB88320;
+    std::array<std::uint32_t, 256> remainders{};
+    for (std::uint32_t byte = 0; byte < remainders.size(); ++byte) {
+      std::uint32_t crc = byte;
+      for (int bit = 0; bit < 8; ++bit) crc = crc >> 1 ^ ((crc & 1U) != 0 ? kReflected : 0U);
+      remainders[byte] = crc;
+    }
+    return remainders;
+  }();
+  std::uint32_t crc = 0;
+  for (const char c : bytes) crc = crc >> 8 ^ table[(crc ^ static_cast<unsigned char>(c)) & 0xffU];
+  return crc;
+}
+
 }  // namespace coast::io

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "../binary.hpp"
+#include "../novatel/novatel_names.hpp"
 #include "../sbf/sbf_names.hpp"
 #include "../vectornav/vectornav_message.hpp"
 #include "checksums.hpp"
@@ -60,7 +61,8 @@ std::uint32_t sentence_id(std::string_view content) {
 }  // namespace
 
 std::string_view name_of(Protocol protocol) {
-  static constexpr std::array<std::string_view, kProtocols> names = {"UBX", "NMEA", "RTCM", "VectorNav", "SBF"};
+  static constexpr std::array<std::string_view, kProtocols> names = {"UBX", "NMEA",    "RTCM",         "VectorNav",
+                                                                     "SBF", "NovAtel", "NovAtel ASCII"};
   return names.at(static_cast<std::size_t>(protocol));
 }
 
@@ -79,9 +81,13 @@ std::string frame_name(Protocol protocol, std::uint32_t id) {
     case Protocol::kSbf:
       return sbf_block_name(id);
     case Protocol::kVectorNav:
+      return fmt::format("VectorNav 0x{:02X}", id);
+    case Protocol::kNovAtel:
+    case Protocol::kNovAtelAscii:
       break;
   }
-  return fmt::format("VectorNav 0x{:02X}", id);
+  const std::string_view name = novatel_log_name(id);
+  return name.empty() ? fmt::format("{} {}", name_of(protocol), id) : fmt::format("{} {}", name_of(protocol), name);
 }
 
 /// Sync 0xB5 0x62, class, id, length of the payload, payload, checksum over class to payload (u-blox F9 interface description,

@@ -9,16 +9,17 @@
 
 namespace coast::io {
 
-enum class Protocol : std::uint8_t { kUbx, kNmea, kRtcm3, kVectorNav, kSbf };
-inline constexpr std::size_t kProtocols = 5;
+enum class Protocol : std::uint8_t { kUbx, kNmea, kRtcm3, kVectorNav, kSbf, kNovAtel, kNovAtelAscii };
+inline constexpr std::size_t kProtocols = 7;
 
 [[nodiscard]] std::string_view name_of(Protocol protocol);
 /// "UBX-RXM-RAWX", "UBX 0x02 0x59" for a message without a name here, "NMEA GGA", "RTCM 1077", "VectorNav 0x0E",
-/// "SBF MeasEpoch", "SBF 4999"
+/// "SBF MeasEpoch", "SBF 4999", "NovAtel RANGE", "NovAtel 1234", "NovAtel ASCII RANGE"
 [[nodiscard]] std::string frame_name(Protocol protocol, std::uint32_t id);
 
 /// One message. UBX: the id is class * 256 + id; NMEA: the three letters of the sentence, or PUB of $PUBX; RTCM 3: the message
-/// number; VectorNav: the byte of the groups, with which the payload begins; SBF: the number of the block without its revision.
+/// number; VectorNav: the byte of the groups, with which the payload begins; SBF: the number of the block without its revision;
+/// NovAtel: the message ID, and the payload begins with the header's sync byte.
 struct MessageFrame {
   Protocol protocol = Protocol::kUbx;
   std::uint32_t id = 0;
@@ -51,6 +52,8 @@ inline constexpr std::size_t kLongestFrame = 65536;
 [[nodiscard]] FrameTrial try_rtcm3(std::string_view bytes);
 [[nodiscard]] FrameTrial try_vectornav(std::string_view bytes);
 [[nodiscard]] FrameTrial try_sbf(std::string_view bytes);
+[[nodiscard]] FrameTrial try_novatel(std::string_view bytes);
+[[nodiscard]] FrameTrial try_novatel_ascii(std::string_view bytes);
 
 /// A protocol with the byte that its frames begin with. Of several with the same byte, the first whose rule does not say kNone
 /// decides.
@@ -71,5 +74,11 @@ inline constexpr std::array<FrameKind, 2> kVectorNavLog{
 /// Of a Septentrio receiver: SBF, and NMEA and RTCM 3 between. Replies to commands ("$R: ..") are no frames.
 inline constexpr std::array<FrameKind, 3> kSbfLog{
     {{Protocol::kSbf, '$', try_sbf}, {Protocol::kNmea, '$', try_nmea}, {Protocol::kRtcm3, '\xd3', try_rtcm3}}};
+/// Of a NovAtel receiver: binary logs, ASCII logs with long and short headers, and NMEA and RTCM 3 between.
+inline constexpr std::array<FrameKind, 5> kNovAtelLog{{{Protocol::kNovAtel, '\xaa', try_novatel},
+                                                       {Protocol::kNovAtelAscii, '#', try_novatel_ascii},
+                                                       {Protocol::kNovAtelAscii, '%', try_novatel_ascii},
+                                                       {Protocol::kNmea, '$', try_nmea},
+                                                       {Protocol::kRtcm3, '\xd3', try_rtcm3}}};
 
 }  // namespace coast::io
