@@ -178,8 +178,10 @@ UnitOutcome run_unit(Campaign& campaign, const CampaignUnit& unit, bool alone) {
       outcome.state = UnitOutcome::State::kFailed;
       outcome.error = result.error;
     }
-    if (const auto cause = result.row.find("likely_cause"); cause != result.row.end())
-      *cause = campaign.portable(cause->get<std::string>(), work.folder());
+    if (result.row.contains("likely_cause")) {
+      nlohmann::ordered_json& cause = result.row["likely_cause"];
+      cause = campaign.portable(cause.get<std::string>(), work.folder());
+    }
     io::write_text(work.folder() / kResult, result_json(result, outcome.cost));
     work.finish(kResult);
   } catch (const InputError& error) {  // of the key: there is nothing that a result could be found by
