@@ -186,6 +186,36 @@ void add_diagnose(CLI::App& app, std::filesystem::path& input, DiagnoseOptions& 
   });
 }
 
+void add_campaign(CLI::App& app, std::filesystem::path& input, CampaignOptions& choice, CommonOptions& common) {
+  auto* campaign =
+      subcommand(app, "campaign", "many missions x error models x outages x effects, on one machine or a cluster", "", common);
+  campaign->add_option("what", choice.what, "plan: try one of each kind; run; status; collect: merge; submit: to an engine")
+      ->required()
+      ->check(CLI::IsMember({"plan", "run", "status", "collect", "submit"}))
+      ->type_name("plan|run|status|collect|submit");
+  campaign->add_option("plan", input, "plan.yaml")->required()->type_name(kFile);
+  campaign->add_option("--shard", choice.shard, "run: one part of the units, as 3/40 (default: all)")->type_name("I/N");
+  campaign->add_flag("--again", choice.again, "run: units that have failed, too");
+  campaign->add_option("--engine", choice.engine, "submit: what runs the shards")
+      ->check(CLI::IsMember({"slurm", "parallel", "snakemake"}))
+      ->type_name("slurm|parallel|snakemake");
+  campaign->add_flag("--now", choice.now, "submit: start it at once");
+  campaign->footer(
+      "Examples:\n  coast campaign plan plan.yaml\n  coast campaign run plan.yaml --shard 3/40\n"
+      "  coast campaign collect plan.yaml\n\nplan.yaml (all keys: docs/reference/campaign.md):\n"
+      "  schema: coast.campaign/1\n"
+      "  missions: [recordings/*/run.yaml]\n"
+      "  error_models:\n"
+      "    - {name: data sheet, file: configs/imu/adis16505.yaml}\n"
+      "  outages:\n"
+      "    - {name: none}\n"
+      "    - {name: minute, sweep: {every_s: 120, durations_s: [60]}}");
+  campaign->callback([&] {
+    jobs::require_kind(input, "campaign");
+    cli::campaign(input, choice, common);
+  });
+}
+
 void add_report(CLI::App& app, std::filesystem::path& folder, CommonOptions& common) {
   auto* report = subcommand(app, "report", "the HTML page again from stored results", "coast report results", common);
   report->add_option("folder", folder, "folder of a run")->required()->type_name(kFolder);
@@ -226,6 +256,7 @@ CommandLine::CommandLine() : app_("coast: post-mission INS/GNSS trajectories", "
   add_compare(app_, input_, other_, lever_arm_, common_);
   add_convert(app_, input_, other_, convert_, common_);
   add_inspect(app_, input_, gps_week_);
+  add_campaign(app_, input_, campaign_, common_);
   add_report(app_, input_, common_);
   app_.parse_complete_callback([this] {
     if (common_.threads > 0)

@@ -33,6 +33,7 @@ class CommandLine {
   std::vector<double> lever_arm_{0.0, 0.0, 0.0};
   DiagnoseOptions diagnose_;
   ConvertOptions convert_;
+  CampaignOptions campaign_;
   std::optional<int> gps_week_;
   std::optional<tbb::global_control> limit_;  ///< of threads, while the subcommand runs
 };

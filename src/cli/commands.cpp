@@ -2,8 +2,12 @@
 
 #include <fmt/format.h>
 
+#include <cstdlib>
+#include <stdexcept>
+
 #include "coast/jobs/array_study.hpp"
 #include "coast/jobs/calibrate.hpp"
+#include "coast/jobs/campaign.hpp"
 #include "coast/jobs/compare.hpp"
 #include "coast/jobs/convert.hpp"
 #include "coast/jobs/diagnose.hpp"
@@ -161,6 +165,67 @@ void inspect(const std::filesystem::path& file, std::optional<int> gps_week, con
   const jobs::InspectResult result = jobs::inspect(config, on_terminal(line, options.quiet));
   line.clear();
   fmt::print("{}", jobs::told(config, result));
+}
+
+namespace {
+
+void tell(const std::string& text, ProgressLine& line, bool quiet) {
+  line.clear();
+  if (!quiet) fmt::print("{}", text);
+}
+
+/// @throws NumericalError  some units have failed  @throws OutputError  results could not be stored
+void require_whole(const jobs::CampaignRun& run, const std::filesystem::path& out) {
+  if (run.unwritten > 0)
+    throw OutputError(out.string(), fmt::format("{} of {} units have no result", run.unwritten, run.units));
+  if (run.failed > 0)
+    throw NumericalError(fmt::format("{} of {} units failed", run.failed, run.units), "",
+                         "the others are done; missions.csv lists the errors");
+}
+
+void run_shard(const jobs::CampaignConfig& config, const std::filesystem::path& out, const CampaignOptions& choice,
+               const CommonOptions& options, ProgressLine& line) {
+  const jobs::Shard shard = choice.shard.empty() ? jobs::Shard{} : jobs::shard_from(choice.shard);
+  const jobs::CampaignRun run = jobs::run_campaign(config, out, shard, choice.again, on_terminal(line, options.quiet));
+  line.clear();
+  for (const std::string& failure : run.failures) fmt::print(stderr, "failed: {}\n", failure);
+  if (!options.quiet)
+    fmt::print("{} units: {} computed, {} were there, {} failed\n", run.units, run.computed, run.found, run.failed);
+  require_whole(run, out);
+}
+
+void submit(const jobs::CampaignConfig& config, const std::filesystem::path& out, const CampaignOptions& choice,
+            const CommonOptions& options, ProgressLine& line) {
+  if (choice.engine.empty()) throw InputError({"", 0, "submit without an engine", "--engine slurm, parallel or snakemake", ""});
+  using jobs::CampaignEngine;
+  const CampaignEngine engine = choice.engine == "slurm"      ? CampaignEngine::kSlurm
+                                : choice.engine == "parallel" ? CampaignEngine::kParallel
+                                                              : CampaignEngine::kSnakemake;
+  const jobs::CampaignEstimate estimate = jobs::estimate_campaign(config, out, on_terminal(line, options.quiet));
+  const std::string command = jobs::write_submission(config, out, engine, estimate);
+  tell(told(estimate) + (choice.now ? "" : "start it with: " + command + "\n"), line, options.quiet);
+  if (choice.now && std::system(command.c_str()) != 0) throw std::runtime_error("this command failed: " + command);
+}
+
+}  // namespace
+
+void campaign(const std::filesystem::path& plan_yaml, const CampaignOptions& choice, const CommonOptions& options) {
+  ProgressLine line(options.quiet);
+  const jobs::CampaignConfig config = jobs::read_campaign(plan_yaml);
+  const std::filesystem::path out = jobs::results_folder(plan_yaml, options.out, jobs::files_of(config));
+  if (choice.what == "run") return run_shard(config, out, choice, options, line);
+  if (choice.what == "submit") return submit(config, out, choice, options, line);
+  if (choice.what == "plan")
+    return tell(told(jobs::estimate_campaign(config, out, on_terminal(line, options.quiet))), line, options.quiet);
+  if (choice.what == "status")
+    return tell(
+        told(jobs::campaign_status(config, out, choice.shard.empty() ? config.shards : jobs::shard_from(choice.shard).count)),
+        line, false);
+  const jobs::CampaignCollection all = jobs::collect_campaign(config, out, on_terminal(line, options.quiet));
+  tell(told(all, out), line, options.quiet);
+  if (all.failed + all.missing > 0)
+    throw NumericalError(fmt::format("{} of {} units failed and {} are missing", all.failed, all.units, all.missing), "",
+                         "missions.csv lists them");
 }
 
 void report(const std::filesystem::path& folder, const CommonOptions& options) {

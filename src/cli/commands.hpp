@@ -43,6 +43,14 @@ void convert(const std::filesystem::path& input, const std::filesystem::path& ou
              const CommonOptions& options);
 /// Prints what is in a file.
 void inspect(const std::filesystem::path& file, std::optional<int> gps_week, const CommonOptions& options);
+struct CampaignOptions {
+  std::string what;    ///< plan, run, status, collect or submit
+  std::string shard;   ///< empty: all units
+  bool again = false;  ///< those that have failed, too
+  std::string engine;  ///< slurm, parallel or snakemake
+  bool now = false;    ///< start what was written for the engine
+};
+void campaign(const std::filesystem::path& plan_yaml, const CampaignOptions& choice, const CommonOptions& options);
 void report(const std::filesystem::path& folder, const CommonOptions& options);
 
 }  // namespace coast::cli

@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "coast/config/derived.hpp"
 #include "coast/config/node.hpp"
 
 namespace coast::config {
@@ -43,6 +44,13 @@ struct TreeData {
   [[nodiscard]] std::string source_of(std::size_t index) const;  // "run.yaml:12"
   [[nodiscard]] InputError error(std::size_t index, std::string_view found, std::string_view expected,
                                  std::string_view what_to_do) const;
+
+  // derived.hpp, for which a node shows its tree to nobody else.
+  static Node with(const Node& root, const std::vector<Replacement>& replacements);
+  static void mark_read(const Node& node);
+  static std::vector<std::filesystem::path> paths_read(const Node& root);
+  static std::string canonical(const Node& root, const std::function<std::string(const std::filesystem::path&)>& in_place_of,
+                               const std::set<std::string>& without);
 };
 
 [[nodiscard]] Node make_root(std::shared_ptr<TreeData> data);

@@ -38,6 +38,9 @@ using StudyConfig = std::variant<SweepStudy, EnsembleStudy>;
 /// study.yaml. @throws InputError  anything missing, out of range or unknown, with file and line
 [[nodiscard]] StudyConfig read_outage(const std::filesystem::path& file);
 [[nodiscard]] StudyConfig read_outage(const config::Node& root);
+/// The outages of a simulated study: swept over the scenario (a map), or a list, in seconds from its start.
+/// @throws InputError  one is not within the scenario
+[[nodiscard]] std::vector<study::OutageGroup> study_groups(const config::Node& set, double mission_s);
 /// File of the study, for titles.
 [[nodiscard]] const std::filesystem::path& file_of(const StudyConfig& config);
 

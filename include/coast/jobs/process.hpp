@@ -108,6 +108,13 @@ struct AidUse {
   NisSummary nis;  ///< of the samples that were used
 };
 
+/// Errors of the IMU that do not depend on its signals, at the end of the mission, where forward and smoothed solution are one:
+/// the sum of the states of each axis, in the sensor's axes.
+struct SensorBiases {
+  Eigen::Vector3d gyro, gyro_sd;    ///< rad/s
+  Eigen::Vector3d accel, accel_sd;  ///< m/s^2
+};
+
 /// Curves of the streamed trajectories, decimated while streaming.
 class TrajectoryCurves {
  public:
@@ -156,6 +163,9 @@ struct ProcessResult {
   std::vector<study::OutageResult> outages;  ///< withheld in the delivered trajectory
   std::vector<study::OutageResult> sweep;    ///< each run separately
   std::optional<study::LeverArmCheck> lever_arm;
+  Eigen::Vector3d lever_arm_used_b = Eigen::Vector3d::Zero();  ///< as used at the end of the mission, m
+  std::optional<Eigen::Vector3d> lever_arm_sd_m;               ///< if it was estimated
+  SensorBiases biases;
   std::optional<EventResults> marked;
   std::vector<Separation> separations;
   std::optional<estimate::NoiseFit> noise_fit;

@@ -67,11 +67,7 @@ std::vector<study::OutageGroup> groups_from(const Node& root, double mission_s) 
   if (list && sweep) throw sweep->error("a sweep beside a list of outages", "one of the two");
   if (list) return outages_from(*list, mission_s);
   if (!sweep) return {};
-  std::vector<study::OutageGroup> groups = study::grouped(sweep_from(*sweep), mission_s);
-  if (groups.empty())
-    throw sweep->error("no outage fits into the scenario", "durations of at most a quarter of it",
-                       "Shorten durations_s or first_s.");
-  return groups;
+  return study_groups(*sweep, mission_s);
 }
 
 study::NamedModel smoothed_model(const Node& item) {
@@ -109,6 +105,15 @@ EnsembleStudy ensemble_study(const Node& root) {
 }
 
 }  // namespace
+
+std::vector<study::OutageGroup> study_groups(const Node& set, double mission_s) {
+  if (set.is_list()) return outages_from(set, mission_s);
+  std::vector<study::OutageGroup> groups = study::grouped(sweep_from(set), mission_s);
+  if (groups.empty())
+    throw set.error("no outage fits into the scenario", "durations of at most a quarter of it",
+                    "Shorten durations_s or first_s.");
+  return groups;
+}
 
 StudyConfig read_outage(const std::filesystem::path& file) {
   return read_outage(io::load_yaml(file));

@@ -22,19 +22,7 @@ const char* name_of(DriftMeasure measure) {
 }
 
 Json solution_json(const std::vector<study::OutageResult>& outages, bool smoothed) {
-  const study::Drift drift = study::drift_of(outages, smoothed);
-  Json j;
-  for (std::size_t axis = 0; axis < 3; ++axis) {
-    const std::string name = name_of(kMeasures[axis]);
-    j["largest"][name] = spread_json(drift.largest[axis]);
-    j["largest"][name]["predicted_rms_m"] = drift.predicted_largest_rms_m(static_cast<Eigen::Index>(axis));
-    j["end"][name] = spread_json(drift.end[axis]);
-    j["end"][name]["predicted_rms_m"] = drift.predicted_end_rms_m(static_cast<Eigen::Index>(axis));
-  }
-  j["largest"]["horizontal"] = spread_json(drift.horizontal);
-  if (drift.against_gnss) j["largest"]["horizontal_against_gnss"] = spread_json(*drift.against_gnss);
-  j["share_inside_95"] = drift.inside_95;
-  return j;
+  return drift_json(study::drift_of(outages, smoothed));
 }
 
 Json manoeuvres_json(const std::vector<study::OutageResult>& outages) {
@@ -91,6 +79,21 @@ Json pairs_json(const OutageStudy& study, std::size_t group) {
 }
 
 }  // namespace
+
+Json drift_json(const study::Drift& drift) {
+  Json j;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    const std::string name = name_of(kMeasures[axis]);
+    j["largest"][name] = spread_json(drift.largest[axis]);
+    j["largest"][name]["predicted_rms_m"] = drift.predicted_largest_rms_m(static_cast<Eigen::Index>(axis));
+    j["end"][name] = spread_json(drift.end[axis]);
+    j["end"][name]["predicted_rms_m"] = drift.predicted_end_rms_m(static_cast<Eigen::Index>(axis));
+  }
+  j["largest"]["horizontal"] = spread_json(drift.horizontal);
+  if (drift.against_gnss) j["largest"]["horizontal_against_gnss"] = spread_json(*drift.against_gnss);
+  j["share_inside_95"] = drift.inside_95;
+  return j;
+}
 
 std::vector<StudyPair> pairs_of(const OutageStudy& study) {
   const std::vector<study::ModelRun>& runs = study.result.runs;

@@ -25,6 +25,8 @@ struct ManoeuvreDrift {
 /// Occurring classes, in the order of study::Manoeuvre.
 [[nodiscard]] std::vector<ManoeuvreDrift> by_manoeuvre(const std::vector<study::OutageResult>& outages);
 
+/// Statistics of one solution as in outage.json and campaign.json.
+[[nodiscard]] nlohmann::ordered_json drift_json(const study::Drift& drift);
 /// outage.json
 [[nodiscard]] nlohmann::ordered_json outage_json(const OutageStudy& study);
 /// outages.csv: one line per outage and error model.

@@ -131,6 +131,25 @@ std::string drift_factors(const study::DriftFactors& drift) {
 
 }  // namespace
 
+void note_last_state(const Work& work, const Delivery& delivery, ProcessResult& result) {
+  const estimate::StateLayout& layout = delivery.solution.filter->layout();
+  const estimate::FilterState& last = delivery.solution.forward.last;
+  for (const noise::Sensor sensor : {noise::Sensor::kGyro, noise::Sensor::kAccel})
+    for (int axis = 0; axis < 3; ++axis) {
+      Eigen::RowVectorXd h = Eigen::RowVectorXd::Zero(last.x.size());
+      for (const estimate::StateLayout::SensorBlock& block : layout.sensors())
+        if (block.sensor == sensor && block.axis == axis && !block.signal_axis)
+          h.segment(block.offset, block.size) = block.output;
+      const bool gyro = sensor == noise::Sensor::kGyro;
+      (gyro ? result.biases.gyro : result.biases.accel)(axis) = h.dot(last.x);
+      (gyro ? result.biases.gyro_sd : result.biases.accel_sd)(axis) = std::sqrt(std::max(0.0, h.dot(last.P * h.transpose())));
+    }
+  result.lever_arm_used_b = work.mission.mission().lever_arm_b;
+  if (!layout.lever_arm()) return;
+  result.lever_arm_used_b += last.x.segment<3>(*layout.lever_arm());
+  result.lever_arm_sd_m = last.P.diagonal().segment<3>(*layout.lever_arm()).cwiseSqrt();
+}
+
 void note_estimates(const Work& work, const ProcessResult& result) {
   if (work.mission.options().auxiliary.time_offset_sd_s > 0.0 ||
       work.mission.mission().time_offset_s != work.config.setup.time_offset_s)

@@ -73,6 +73,8 @@ void doubt_lever_arm(const Work& work, ProcessResult& result);
 /// Each outage of the sweep separately.
 void study_sweep(const Work& work, const Delivery& delivery, const EarlierPasses& passes, ProcessResult& result);
 [[nodiscard]] std::vector<Separation> separate_forward_and_backward(const Work& work, const Delivery& delivery, bool carried);
+/// Biases and lever arm in the last state of the filter.
+void note_last_state(const Work& work, const Delivery& delivery, ProcessResult& result);
 /// Adds the estimates to the resolved file as comments, ready to be used in another run.
 void note_estimates(const Work& work, const ProcessResult& result);
 

@@ -211,6 +211,8 @@ void read_smoother(const Node& root, RunConfig& run) {
 
 void read_imu(const Node& imu, RunConfig& run, estimate::NoiseFitChoice& choice) {
   run.imu = io::ImuFileOptions::from(imu);
+  if (const auto name = imu.find("name")) run.imu_name = name->text();
+  if (const auto serial = imu.find("serial")) run.imu_serial = serial->text();
   if (const auto levels = imu.find("noise_levels")) run.noise_levels = levels->path();
   run.setup.C_s_b = ins::C_s_b(ins::MountingOptions::from(imu));
   run.setup.model = noise::ImuErrorModel::from(io::load_yaml(imu.at("error_model").path()));
