@@ -37,6 +37,7 @@ const std::vector<ConfigurationFile>& kinds() {
       {"coast.estimator_study/", "a study of estimators", "calibrate", {}},
       {"coast.array/", "an array of IMUs", "synth", {"imus"}},
       {"coast.array_study/", "a study of arrays", "synth", {}},
+      {"coast.fleet/", "a fleet", "fleet", {"estimates"}},
       {"coast.ppk/", "a solution of RINEX", "ppk", {"rover", "base"}},
       {"coast.imu_error_model/", "an error model", "", {"gyro", "accel"}},
   };
