@@ -10,6 +10,7 @@
 #include "coast/jobs/convert.hpp"
 #include "coast/jobs/estimator_study.hpp"
 #include "coast/jobs/file_kind.hpp"
+#include "coast/jobs/fleet.hpp"
 #include "coast/jobs/ppk.hpp"
 #include "coast/jobs/synth.hpp"
 #include "coast/jobs/tumble.hpp"
@@ -110,6 +111,24 @@ void add_synth(CLI::App& app, std::filesystem::path& input, CommonOptions& commo
   synth->callback([&input, &common] {
     jobs::require_kind(input, "synth");
     cli::synth(input, common);
+  });
+}
+
+void add_fleet(CLI::App& app, std::filesystem::path& input, CommonOptions& common) {
+  auto* fleet =
+      subcommand(app, "fleet",
+                 "estimates of many missions of the same sensors -> their values, what changed and when, which missions depart",
+                 "", common);
+  fleet->add_option("input", input, "estimates.csv, or fleet.yaml")->required()->type_name(kFile);
+  fleet->footer(
+      fmt::format("Examples:\n  coast fleet estimates.csv --out fleet\n  coast fleet fleet.yaml\n\nfleet.yaml (all keys: "
+                  "docs/reference/fleet.md):\n{}\n\nestimates.csv, SI:\n"
+                  "  mission,unit,start,quantity,axis,value,sigma,unit_of_value,temperature_degC\n"
+                  "  m0001,imu-07,2025-07-08T19:34:18,lever_arm,x,0.412,0.004,m,23.5",
+                  jobs::fleet_example("  ")));
+  fleet->callback([&input, &common] {
+    if (input.extension() == ".yaml") jobs::require_kind(input, "fleet");
+    cli::fleet(input, common);
   });
 }
 
@@ -253,6 +272,7 @@ CommandLine::CommandLine() : app_("coast: post-mission INS/GNSS trajectories", "
   add_calibrate(app_, input_, common_);
   add_ppk(app_, input_, common_);
   add_synth(app_, input_, common_);
+  add_fleet(app_, input_, common_);
   add_compare(app_, input_, other_, lever_arm_, common_);
   add_convert(app_, input_, other_, convert_, common_);
   add_inspect(app_, input_, gps_week_);

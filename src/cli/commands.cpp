@@ -13,6 +13,7 @@
 #include "coast/jobs/diagnose.hpp"
 #include "coast/jobs/estimator_study.hpp"
 #include "coast/jobs/file_kind.hpp"
+#include "coast/jobs/fleet.hpp"
 #include "coast/jobs/inspect.hpp"
 #include "coast/jobs/outage.hpp"
 #include "coast/jobs/ppk.hpp"
@@ -123,6 +124,12 @@ void synth(const std::filesystem::path& input, const CommonOptions& options) {
   const jobs::ArrayConfig config = jobs::read_synth(input);
   run(
       config, [&](const auto&, const auto& progress) { return jobs::synth(config, progress); }, input, options);
+}
+
+void fleet(const std::filesystem::path& input, const CommonOptions& options) {
+  const jobs::FleetConfig config = jobs::read_fleet(input);
+  run(
+      config, [&](const auto&, const auto& progress) { return jobs::fleet_statistics(config, progress); }, input, options);
 }
 
 void diagnose(const std::filesystem::path& run_yaml, const DiagnoseOptions& choice, const CommonOptions& options) {

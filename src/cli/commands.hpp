@@ -25,6 +25,8 @@ void calibrate(const std::filesystem::path& input, const CommonOptions& options)
 void ppk(const std::filesystem::path& input, const CommonOptions& options);
 /// An array, or a study of arrays if the file has that schema.
 void synth(const std::filesystem::path& input, const CommonOptions& options);
+/// A table of estimates, or fleet.yaml.
+void fleet(const std::filesystem::path& input, const CommonOptions& options);
 struct DiagnoseOptions {
   int twins = 20;
   bool quick = false;

@@ -38,6 +38,7 @@ const std::vector<ConfigurationFile>& kinds() {
       {"coast.array/", "an array of IMUs", "synth", {"imus"}},
       {"coast.array_study/", "a study of arrays", "synth", {}},
       {"coast.campaign/", "a campaign", "campaign", {"missions"}},
+      {"coast.fleet/", "a fleet", "fleet", {"estimates"}},
       {"coast.ppk/", "a solution of RINEX", "ppk", {"rover", "base"}},
       {"coast.imu_error_model/", "an error model", "", {"gyro", "accel"}},
   };
