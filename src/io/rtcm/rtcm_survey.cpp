@@ -38,8 +38,9 @@ class Surveyor {
 
  private:
   void follow(const MessageFrame& frame) {
+    constexpr int kAnyWeek = 2000;
     const bool follows = now_ || !is_of_day(frame);
-    const auto t = follows ? rtcm_time(frame, now_.value_or(kAnyWeek)) : std::nullopt;
+    const auto t = follows ? rtcm_time(frame, now_.value_or(geo::GpsTime::from_week(kAnyWeek, kHalfRtcmWeek))) : std::nullopt;
     if (!t) return;
     if (!now_) first_ = *t;
     now_ = t;
@@ -101,7 +102,6 @@ class Surveyor {
   }
 
   static constexpr int kOfTenBits = 2;  ///< the highest rank of a week modulo 1024
-  const geo::GpsTime kAnyWeek = geo::GpsTime::from_week(2000, kHalfRtcmWeek);
   FrameStream stream_;
   std::optional<geo::GpsTime> near_;
   std::optional<geo::GpsTime> now_;   ///< in the week of its own
