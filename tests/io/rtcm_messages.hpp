@@ -77,7 +77,7 @@ inline std::int64_t glonass_epoch(int day, std::int64_t ms) {
 /// The orbit as 1019, 1042, 1044, 1045 and 1046 have it, in the units of the message, from crs to the rate of the node.
 struct RtcmOrbit {
   int harmonic_bits = 16, time_bits = 16;
-  std::int64_t toe = 36'000 / 16, root = 2'701'983'744;  ///< 5153.66 sqrt(m)
+  std::int64_t toe = 36'000 / 16, root = 2'701'983'744;  ///< 5153.625 sqrt(m)
   [[nodiscard]] BitString bits() const {
     BitString b;
     b.put(-1100, harmonic_bits).put(12'345, 16).put(-1'717'986'918, 32).put(-222, harmonic_bits).put(104'857'600, 32);
@@ -108,7 +108,7 @@ inline std::string rtcm_1042(int satellite, int week) {
   orbit.harmonic_bits = 18;
   orbit.time_bits = 17;
   orbit.toe = 36'000 / 8;
-  orbit.root = 3'404'464'000;  // 6493.5 sqrt(m)
+  orbit.root = 3'404'464'128;  // 6493.5 sqrt(m)
   BitString b;
   b.put(1042, 12).put(satellite, 6).put(week, 13).put(2, 4).put(-777, 14).put(17, 5).put(orbit.toe, 17).put(-3, 11);
   b.put(-1234, 22).put(-345'678, 24).put(9, 5).put(orbit.bits()).put(-56, 10).put(30, 10).put(1, 1);
@@ -120,7 +120,7 @@ inline std::string rtcm_galileo(int number, int satellite, int week) {
   RtcmOrbit orbit;
   orbit.time_bits = 14;
   orbit.toe = 600;
-  orbit.root = 2'852'443'545;  // 5440.6 sqrt(m)
+  orbit.root = 2'852'441'293;  // 5440.6 sqrt(m)
   BitString b;
   b.put(number, 12).put(satellite, 6).put(week, 12).put(77, 10).put(107, 8).put(-777, 14).put(601, 14).put(-9, 6);
   b.put(800, 21).put(-700'000, 31).put(orbit.bits()).put(-33, 10);
@@ -139,7 +139,7 @@ inline std::string rtcm_1020(int slot, int channel, int quarter, int malfunction
   b.put_signed(2'000'000, 24).put_signed(-20'000'000, 27).put_signed(2, 5);
   b.put_signed(-500'000, 24).put_signed(37'000'000, 27).put_signed(-1, 5);
   b.put(0, 1).put_signed(-5, 11).put(0, 2).put(0, 1).put_signed(123'456, 22).put_signed(0, 5).put(0, 5).put(0, 1);
-  b.put(0, 4).put(1, 2).put(0, 1).put(0, 11).put(0, 32).put(0, 5).put_signed(0, 22).put(0, 1).put(0, 7);
+  b.put(0, 4).put(0, 11).put(1, 2).put(0, 1).put(0, 11).put(0, 32).put(0, 5).put_signed(0, 22).put(0, 1).put(0, 7);
   return rtcm_frame(b);
 }
 

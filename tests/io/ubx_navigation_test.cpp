@@ -375,44 +375,6 @@ TEST(Beidou, D1AndD2HaveTheirNumbersInBothFormsOfChecks) {
   }
 }
 
-/// Subframes of C10 as a receiver gave them (Swift Navigation's test of its own decoder), and the ephemeris in its RINEX file.
-TEST(Beidou, RecordedSubframesHaveTheEphemerisOfTheirRinexFile) {
-  const std::vector<std::vector<std::uint32_t>> recorded = {
-      {0x38901313, 0x12380030, 0x05046242, 0x1c0380cc, 0x1e0a1484, 0x3a0b8ffe, 0x0ef13020, 0x20007494, 0x08647f83, 0x3053e192},
-      {0x38902311, 0x12502f78, 0x2af7a35a, 0x0c5842f1, 0x3c440ae4, 0x0cc3a9fe, 0x09fe5e27, 0x2917f8a6, 0x1d6cae2c, 0x342e5c51},
-      {0x3890331e, 0x126b13e2, 0x204b051d, 0x0d487f3a, 0x3e8fff4f, 0x1155fea1, 0x16da91f5, 0x28a22cf0, 0x374c7ff3, 0x02c09a96}};
-  std::string messages;
-  for (const auto& words : recorded) messages += sfrbx(3, 10, 0, 0, words);
-  const auto navigation = navigation_of(timed(messages, 201'700.0, 1998));
-  ASSERT_EQ(navigation.kepler.size(), 1U);
-  const auto& e = navigation.kepler[0];
-  const auto near = [](double value, double rinex) { EXPECT_NEAR(value, rinex, 1e-11 * std::abs(rinex)); };  // its 12 digits
-  EXPECT_EQ(e.toe, geo::GpsTime::from_week(1998, 201'614.0));
-  EXPECT_EQ(e.toc, e.toe);
-  near(e.crc, -3.47640625000E+02);
-  near(e.crs, -1.20656250000E+02);
-  near(e.cuc, -3.98792326450E-06);
-  near(e.cus, 1.90609134734E-05);
-  near(e.cic, -2.18860805035E-08);
-  near(e.cis, -3.92086803913E-07);
-  near(e.delta_n, 1.08933108930E-09);
-  near(e.mean_anomaly, -1.43540489556E+00);
-  near(e.eccentricity, 4.98019636143E-03);
-  near(e.sqrt_a, 6.49363065910E+03);
-  near(e.node, 1.69518318499E+00);
-  near(e.node_rate, -2.13366030409E-09);
-  near(e.perigee, -2.75182959435E+00);
-  near(e.inclination, 9.20638105072E-01);
-  near(e.inclination_rate, -9.93255658799E-10);
-  near(e.clock[0], -1.81104638614E-04);
-  near(e.clock[1], -2.85078627371E-11);
-  EXPECT_EQ(e.clock[2], 0.0);
-  near(e.group_delay[0], 5.6E-09);
-  near(e.group_delay[1], 3.0E-09);
-  EXPECT_EQ(e.accuracy_m, 2.0);
-  EXPECT_EQ(e.health, 0);
-}
-
 TEST(Beidou, OfDifferentFramesIsNotMixed) {
   auto torn = d1({}), next = d1({.second = 36'012});
   torn[2] = next[2];

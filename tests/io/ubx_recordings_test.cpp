@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <tuple>
+
 #include "coast/io/rinex.hpp"
 #include "support/support.hpp"
 
@@ -70,14 +72,33 @@ TEST_F(UbxRecording, HasTheObservationsOfItsRinexFile) {
 
 TEST_F(UbxRecording, HasEphemeridesOfGpsAndGalileo) {
   const auto navigation = read_navigation(file("f9p_static.ubx.gz"));
-  long gps = 0, galileo = 0;
+  constexpr int kFnavSources = 1 << 1 | 1 << 8;
+  long gps = 0, inav = 0, fnav = 0, both = 0;
   for (const auto& e : navigation.kepler) {
-    (e.satellite.system == record::SatelliteSystem::kGps ? gps : galileo) += 1;
+    const bool is_gps = e.satellite.system == record::SatelliteSystem::kGps;
+    (is_gps ? gps : e.sources == kFnavSources ? fnav : inav) += 1;
     EXPECT_EQ(e.health, 0);
     EXPECT_LE(e.accuracy_m, 2.0);
   }
   EXPECT_EQ(gps, 19);
-  EXPECT_EQ(galileo, 28);
+  EXPECT_EQ(inav, 28);
+  EXPECT_EQ(fnav, 26);
+  // Both messages of Galileo have the orbit of the same batch, in other places of other pages; F/NAV has a clock of its own.
+  for (const auto& e : navigation.kepler)
+    for (const auto& other : navigation.kepler) {
+      if (e.sources != kFnavSources || other.sources == kFnavSources || other.satellite != e.satellite ||
+          other.issue != e.issue)
+        continue;
+      ++both;
+      EXPECT_EQ(std::tuple(e.toe, e.toc, e.sqrt_a, e.eccentricity, e.mean_anomaly, e.delta_n, e.perigee, e.node, e.node_rate),
+                std::tuple(other.toe, other.toc, other.sqrt_a, other.eccentricity, other.mean_anomaly, other.delta_n,
+                           other.perigee, other.node, other.node_rate));
+      EXPECT_EQ(std::tuple(e.inclination, e.inclination_rate, e.cuc, e.cus, e.crc, e.crs, e.cic, e.cis, e.group_delay[0]),
+                std::tuple(other.inclination, other.inclination_rate, other.cuc, other.cus, other.crc, other.crs, other.cic,
+                           other.cis, other.group_delay[0]));
+      EXPECT_NEAR(e.clock[0], other.clock[0], 1e-8);
+    }
+  EXPECT_EQ(both, 26);
   EXPECT_TRUE(navigation.gps_ionosphere);
   // Of 1251 subframes of LNAV two have a hand-over word that does not end with two zeros, and so a wrong parity after it.
   long spoiled = 0;

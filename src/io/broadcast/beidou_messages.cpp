@@ -32,15 +32,18 @@ std::uint32_t alternate(std::uint32_t bits, int offset) {
 }
 
 /// A word but the first has two codes of 11 bits of data and 4 of check.
-bool codes_hold(std::uint32_t word) {
+bool codes_hold(std::uint32_t word, bool in_turn) {
   const std::uint32_t first = word >> 19 & 0x7ffU, second = word >> 8 & 0x7ffU, checks = word & 0xffU;
-  return (bch_holds(first << 4 | checks >> 4) && bch_holds(second << 4 | (checks & 15U))) ||
-         (bch_holds(first << 4 | alternate(checks, 1)) && bch_holds(second << 4 | alternate(checks, 0)));
+  return bch_holds(first << 4 | (in_turn ? alternate(checks, 1) : checks >> 4)) &&
+         bch_holds(second << 4 | (in_turn ? alternate(checks, 0) : checks & 15U));
 }
 
 /// Of the first word only the last 15 bits are a code.
 bool codes_hold(std::span<const std::uint32_t> words) {
-  return bch_holds(words[0] & 0x7fffU) && std::ranges::all_of(words.subspan(1), [](std::uint32_t w) { return codes_hold(w); });
+  const auto all = [&](bool in_turn) {
+    return std::ranges::all_of(words.subspan(1), [=](std::uint32_t word) { return codes_hold(word, in_turn); });
+  };
+  return bch_holds(words[0] & 0x7fffU) && (all(false) || all(true));
 }
 
 BeidouData beidou_data(std::span<const std::uint32_t> words) {

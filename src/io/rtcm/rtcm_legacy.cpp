@@ -96,7 +96,7 @@ void read_legacy_satellite(const LegacyLayout& layout, BitCursor c, RtcmMeasurem
   };
   first.code_m = code;
   keep(first, phase);
-  if (!layout.two_bands) return;
+  if (!layout.two_bands || satellite->system == System::kSbas) return;  // which has no second band
   RtcmMeasurement second;
   second.signal = second_signal(layout.system, c.integer(2));
   const auto difference = measured(c, 14, kCodeUnit);

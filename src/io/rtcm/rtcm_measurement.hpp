@@ -2,6 +2,7 @@
 // What a message of RTCM says of one signal. Private to the room.
 
 #include <optional>
+#include <utility>
 #include <vector>
 
 #include "../frames/frame.hpp"

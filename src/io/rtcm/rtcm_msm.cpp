@@ -1,4 +1,4 @@
-#include <array>
+#include <algorithm>
 #include <cmath>
 
 #include "../broadcast/bit_field.hpp"
@@ -29,34 +29,34 @@ struct MsmColumn {
 };
 
 /// Places of the fields in one message (tables 3.5-78 to -88).
-class MsmLayout {
- public:
-  MsmLayout(MsmKind kind, std::size_t at, std::size_t satellites, std::size_t cells) : end_(at) {
-    const bool rates = kind.has_rates(), fine = kind.is_fine();
-    whole_ms = next(8, satellites);
-    if (rates) extended = next(4, satellites);
-    part_ms = next(10, satellites);
-    if (rates) rough_rate = next(14, satellites);
-    code = next(fine ? 20 : 15, cells);
-    phase = next(fine ? 24 : 22, cells);
-    lock = next(fine ? 10 : 4, cells);
-    half_cycle = next(1, cells);
-    cn0 = next(fine ? 10 : 6, cells);
-    if (rates) fine_rate = next(15, cells);
-  }
-  [[nodiscard]] std::size_t end() const { return end_; }
-
+struct MsmLayout {
   MsmColumn whole_ms, extended, part_ms, rough_rate;
   MsmColumn code, phase, lock, half_cycle, cn0, fine_rate;
+  std::size_t end = 0;  ///< bits of the message
 
- private:
   MsmColumn next(std::size_t width, std::size_t rows) {
-    const MsmColumn column{end_, width};
-    end_ += width * rows;
+    const MsmColumn column{end, width};
+    end += width * rows;
     return column;
   }
-  std::size_t end_;
 };
+
+MsmLayout msm_layout(MsmKind kind, std::size_t at, std::size_t satellites, std::size_t cells) {
+  const bool rates = kind.has_rates(), fine = kind.is_fine();
+  MsmLayout layout;
+  layout.end = at;
+  layout.whole_ms = layout.next(8, satellites);
+  if (rates) layout.extended = layout.next(4, satellites);
+  layout.part_ms = layout.next(10, satellites);
+  if (rates) layout.rough_rate = layout.next(14, satellites);
+  layout.code = layout.next(fine ? 20 : 15, cells);
+  layout.phase = layout.next(fine ? 24 : 22, cells);
+  layout.lock = layout.next(fine ? 10 : 4, cells);
+  layout.half_cycle = layout.next(1, cells);
+  layout.cn0 = layout.next(fine ? 10 : 6, cells);
+  if (rates) layout.fine_rate = layout.next(15, cells);
+  return layout;
+}
 
 /// DF402: the least time of lock is 0, 32, 64, .. 524288 ms.
 double coarse_lock(std::uint32_t indicator) {
@@ -96,7 +96,7 @@ class MsmMessage {
   BitField bits_;
   std::vector<std::size_t> satellites_, signals_;
   std::vector<bool> cells_;  ///< by satellite, then by signal
-  MsmLayout layout_{kind_, 0, 0, 0};
+  MsmLayout layout_;
   bool is_whole_ = false;
 };
 
@@ -113,8 +113,8 @@ MsmMessage::MsmMessage(MsmKind kind, std::string_view payload) : kind_(kind), bi
     cells_.push_back(bits_.bits(kCells + i, 1) != 0);
     set += cells_.back() ? 1 : 0;
   }
-  layout_ = MsmLayout(kind, kCells + cells, satellites_.size(), set);
-  is_whole_ = size >= layout_.end();
+  layout_ = msm_layout(kind, kCells + cells, satellites_.size(), set);
+  is_whole_ = size >= layout_.end;
 }
 
 /// DF397 and DF398: whole milliseconds and 1024ths.

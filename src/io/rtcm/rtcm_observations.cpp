@@ -38,6 +38,7 @@ class RtcmObservationReader {
     recording_.source = stream_.name();
     MessageFrame frame;
     while (stream_.next(frame)) take(frame);
+    std::erase_if(recording_.epochs, [](const record::ObservationEpoch& epoch) { return epoch.observations.empty(); });
     if (recording_.epochs.empty()) refuse();
     for (record::ObservationEpoch& epoch : recording_.epochs)
       std::ranges::stable_sort(epoch.observations, {}, [](const Observation& o) { return std::pair(o.satellite, o.signal); });
@@ -97,7 +98,6 @@ void RtcmObservationReader::take_epoch(const MessageFrame& frame) {
   record::ObservationEpoch* epoch = epoch_at(*t);
   if (epoch == nullptr) return reversed_.add(t);
   for (const RtcmMeasurement& m : measurements->signals) take_measurement(m, *t, *epoch);
-  if (epoch->observations.empty()) recording_.epochs.erase(recording_.epochs.begin() + (epoch - recording_.epochs.data()));
 }
 
 /// Messages of one time are one epoch, whatever their bit for "more to come" says: casters clear it. Those of different systems

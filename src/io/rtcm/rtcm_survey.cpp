@@ -38,8 +38,9 @@ class Surveyor {
 
  private:
   void follow(const MessageFrame& frame) {
+    constexpr int kAnyWeek = 2000;
     const bool follows = now_ || !is_of_day(frame);
-    const auto t = follows ? rtcm_time(frame, now_.value_or(kAnyWeek)) : std::nullopt;
+    const auto t = follows ? rtcm_time(frame, now_.value_or(geo::GpsTime::from_week(kAnyWeek, kHalfRtcmWeek))) : std::nullopt;
     if (!t) return;
     if (!now_) first_ = *t;
     now_ = t;
@@ -76,16 +77,15 @@ class Surveyor {
     if (ahead >= 0.0 && ahead < kMost) ++leap_seconds_[static_cast<int>(std::lround(ahead))];
   }
 
-  /// Of the weeks that are the same modulo 1024, the latest in which there were as many leap seconds.
+  /// Of the weeks that are the same modulo 1024, an earlier one only if it is the one with as many leap seconds.
   [[nodiscard]] geo::GpsTime by_leap_seconds(geo::GpsTime start) const {
     constexpr double kTurn = 1024.0 * 2.0 * kHalfRtcmWeek;
+    constexpr int kFirstWeek = 1250;  // 2004, the year of RTCM 3
     if (leap_seconds_.empty()) return start;
     const auto found = std::ranges::max_element(leap_seconds_, {}, [](const auto& one) { return one.second; })->first;
-    const auto off = [&](geo::GpsTime t) { return std::abs(geo::leap_seconds(t) - found); };
-    geo::GpsTime best = start;
-    for (geo::GpsTime t = start - kTurn; t > geo::GpsTime(); t = t - kTurn)
-      if (off(t) < off(best)) best = t;
-    return best;
+    const geo::GpsTime earlier = start - kTurn;
+    const bool is_earlier = earlier.week() > kFirstWeek && geo::leap_seconds(earlier) == found;
+    return is_earlier && geo::leap_seconds(start) != found ? earlier : start;
   }
 
   void note(const MessageFrame& frame) {
@@ -102,7 +102,6 @@ class Surveyor {
   }
 
   static constexpr int kOfTenBits = 2;  ///< the highest rank of a week modulo 1024
-  const geo::GpsTime kAnyWeek = geo::GpsTime::from_week(2000, kHalfRtcmWeek);
   FrameStream stream_;
   std::optional<geo::GpsTime> near_;
   std::optional<geo::GpsTime> now_;   ///< in the week of its own
