@@ -253,17 +253,17 @@ class Database {
 
 TEST(RosBag, InSqliteIsRead) {
   const Files files;
-  for (const bool compressed : {false, true}) {
+  for (const bool compressed : {true, false}) {
     {
       const Database base(files.path("drive.db3"));
       base.topic(0, "/imu/data", "sensor_msgs/msg/Imu");
       base.topic(1, "/fix", "sensor_msgs/msg/NavSatFix");
       base.topic(2, "/image", "sensor_msgs/msg/Image");
+      base.message({2, kBagStart, std::string(100000, 'x')});
       for (BagEntry entry : drive(kCdrLittle, 0, 200)) {
         if (compressed) entry.bytes = zstd(entry.bytes);
         base.message(entry);
       }
-      base.message({2, kBagStart, std::string(100000, 'x')});
       base.message({7, kBagStart, "no such topic"});
     }
     expect_drive(files, "drive.db3");
@@ -271,7 +271,7 @@ TEST(RosBag, InSqliteIsRead) {
   }
   // Pages that are not there: what is before them is read.
   const std::string bytes = files.get("drive.db3");
-  files.put("cut.db3", bytes.substr(0, bytes.size() - 20 * 4096));
+  files.put("cut.db3", bytes.substr(0, bytes.size() - std::size_t{12} * 4096));
   const auto cut = files.imu("cut.db3");
   EXPECT_GT(cut.samples.size(), 10U);
   EXPECT_LT(cut.samples.size(), 200U);
