@@ -39,6 +39,13 @@ constexpr RecordingPart kMarkPart{"marks.csv", "time marks", has_marks,
 constexpr RecordingPart kPosPart{"pos", "positions", has_fixes,
                                  [](const Path& file, const FileContents& c) { write_gnss_pos(file, *c.gnss); }};
 
+bool has_imu_or_fixes(const FileContents& c) {
+  return has_imu(c) || has_fixes(c);
+}
+constexpr RecordingPart kBagPart{"mcap", "IMU and positions", has_imu_or_fixes, [](const Path& file, const FileContents& c) {
+                                   write_mcap(file, c.imu ? &*c.imu : nullptr, c.gnss ? &*c.gnss : nullptr);
+                                 }};
+
 }  // namespace
 
 const std::vector<RecordingFormat>& recording_formats() {
@@ -46,6 +53,7 @@ const std::vector<RecordingFormat>& recording_formats() {
       {"rinex", "RINEX 3.05: observations (.obs), ephemerides (.nav)", {kObservationPart, kNavigationPart}},
       {"csv", "tables of the IMU (.imu.csv), positions (.gnss.csv), time marks (.marks.csv)", {kImuPart, kFixPart, kMarkPart}},
       {"pos", "positions as RTKLIB .pos", {kPosPart}},
+      {"mcap", "bag of ROS 2: IMU and positions", {kBagPart}},
   };
   return table;
 }

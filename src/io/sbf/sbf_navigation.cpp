@@ -19,6 +19,8 @@ namespace coast::io {
 
 namespace {
 
+using System = record::SatelliteSystem;
+
 constexpr std::size_t kSbfBits = 12;  // where the bits of a raw block begin, after satellite, source and channel
 
 /// Words of 32 bits, the first received bit the highest, as bytes.
@@ -123,7 +125,6 @@ MessageUse SbfNavigationReader::keep(const std::optional<Ephemeris>& ephemeris, 
 
 /// SVID, result of the receiver's own check, errors that it corrected, source, frequency number, channel, bits.
 MessageUse SbfNavigationReader::decode_raw(std::uint32_t id, std::string_view payload, geo::GpsTime now) {
-  using System = record::SatelliteSystem;
   constexpr std::size_t kLnavWords = 10, kInavWords = 8, kGlonassWords = 3;
   const auto holds = [&](std::size_t words) { return payload.size() >= kSbfBits + 4 * words; };
   if (!holds(0)) return MessageUse::kWrong;
