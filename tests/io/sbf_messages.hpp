@@ -1,6 +1,7 @@
 #pragma once
 // SBF blocks as a Septentrio receiver writes them, from the fields of its reference guide. Shares no code with the reader.
 
+#include <algorithm>
 #include <cmath>
 #include <vector>
 

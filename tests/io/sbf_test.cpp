@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <cstdlib>
+
 #include "../../src/io/frames/frame_stream.hpp"
 #include "coast/geo/earth.hpp"
 #include "coast/geo/units.hpp"

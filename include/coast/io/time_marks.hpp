@@ -16,10 +16,10 @@ namespace coast::io {
 /// The keys of `events:` that describe the file.
 ///
 ///     events:
-///       file: images.csv                   # or RINEX observations with event records, or UBX with UBX-TIM-TM2
+///       file: images.csv                   # or RINEX observations with event records, or UBX with UBX-TIM-TM2, SBF
 ///       columns: {time: t, id: image, position: [lat, lon, h]}      # id and position are optional
 ///       frame, utm_zone, origin_deg_m, height, geoid_height_m, gps_week, time: as under `gnss:`
-///       edge: any                          # or rising | falling, of UBX
+///       edge: any                          # or rising | falling, of UBX and SBF
 ///
 /// Without `columns` a table needs the header time_s, or gps_week and sow_s; the columns id and lat_deg, lon_deg, height_m are
 /// read where it has them.
@@ -41,6 +41,7 @@ struct TimeMarkFileOptions {
 ///
 /// - UBX: both edges of UBX-TIM-TM2 in GPS time. Marks without valid time, or in the receiver's own time, are counted and left
 ///   out, with an event.
+/// - SBF: edges of ExtEvent in GPS time; those without the bias of the receiver's clock likewise.
 /// - RINEX observations: event records with flag 5, in the time scale of the observations.
 /// - Tables: every row; rows whose numbers are empty or not finite are counted and left out, with an event.
 ///

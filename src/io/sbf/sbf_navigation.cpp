@@ -3,6 +3,9 @@
 
 #include <fmt/format.h>
 
+#include <array>
+#include <cmath>
+
 #include "../broadcast/bit_field.hpp"
 #include "../broadcast/galileo_inav.hpp"
 #include "../broadcast/glonass_strings.hpp"
