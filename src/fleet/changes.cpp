@@ -60,6 +60,13 @@ double scale_of(const std::vector<Observations>& all, const Scatter& scatter) {
   return fit_robustly(units, z).scale;
 }
 
+/// Robust -2 log-likelihood of one unit, without log|V|.
+double cost_of_unit(const Panel& panel, std::size_t u, const std::vector<Change>& changes, const Scatter& scatter) {
+  const std::vector<WhitenedUnit> unit{whiten(design_of(panel.series[u], u, changes).observations, scatter)};
+  const RobustFit fit = fit_robustly(unit, {unit[0].z});
+  return loss(fit.residuals[0] * fit.scale);
+}
+
 /// The search in one panel.
 class Search {
  public:
@@ -93,12 +100,8 @@ class Search {
                                 : robust_scatter(panel_, model_.changes, {});
   }
 
-  /// Robust -2 log-likelihood of one unit, or all, at the present scatter.
   [[nodiscard]] double unit_cost(std::size_t u, const std::vector<Change>& changes) const {
-    const Observations o = design_of(panel_.series[u], u, changes).observations;
-    const std::vector<WhitenedUnit> unit{whiten(o, model_.scatter)};
-    const RobustFit fit = fit_robustly(unit, {unit[0].z});
-    return loss(fit.residuals[0] * fit.scale);
+    return cost_of_unit(panel_, u, changes, model_.scatter);
   }
   [[nodiscard]] double cost(const std::vector<Change>& changes) const {
     double sum = 0.0;
@@ -300,6 +303,40 @@ PanelChanges search_panel(const Panel& panel, const std::vector<double>& null, d
   for (const Observations& o : observations_of(panel, model.changes, {}))
     model.walk_gain += restricted_log_likelihood(o, model.scatter) - restricted_log_likelihood(o, {model.scatter.tau, 0.0});
   return model;
+}
+
+/// Whether a unit has a step already whose date may be that of another one.
+bool has_step(const PanelChanges& model, std::size_t unit, const Change& other) {
+  return std::ranges::any_of(model.changes, [&](const Change& c) {
+    return c.kind == ChangeKind::kStep && std::ranges::find(c.units, unit) != c.units.end() &&
+           c.t_95.first <= other.t_95.second && other.t_95.first <= c.t_95.second;
+  });
+}
+
+/// A step of one unit in one axis: the other axes of the quantity have it too where it is seen there at 1 %, at this date. This
+/// adds no false alarm, as the event is told already.
+void extend_to_other_axes(const Fleet& fleet, std::vector<PanelChanges>& models) {
+  constexpr double kSeen = 6.635;  // chi-square with one degree of freedom, 1 %
+  const std::vector<PanelChanges> found = models;
+  for (std::size_t p = 0; p < found.size(); ++p)
+    for (std::size_t q = 0; q < found.size(); ++q) {
+      const Panel& panel = fleet.panels[q];
+      if (p == q || panel.quantity != fleet.panels[p].quantity) continue;
+      for (const Change& change : found[p].changes) {
+        if (change.kind != ChangeKind::kStep || change.units.size() != 1) continue;
+        const auto same = std::ranges::find(panel.series, fleet.panels[p].series[change.units[0]].unit, &Series::unit);
+        if (same == panel.series.end()) continue;
+        const auto u = static_cast<std::size_t>(same - panel.series.begin());
+        if (has_step(models[q], u, change)) continue;
+        std::vector<Change> with = models[q].changes;
+        with.push_back(change);
+        with.back().units = {u};
+        const double gain =
+            cost_of_unit(panel, u, models[q].changes, models[q].scatter) - cost_of_unit(panel, u, with, models[q].scatter);
+        with.back().statistic = gain;
+        if (gain > kSeen) models[q].changes = std::move(with);
+      }
+    }
 }
 
 std::vector<LeftOut> none_left_out(const Fleet& fleet) {
