@@ -33,7 +33,7 @@ TEST(PanelTest, StatisticIsLeastSquaresWhereNothingIsClipped) {
     panel.series[0].estimates.push_back(e);
   }
   const PanelTest test(panel, {}, {}, {});
-  const Candidate best = test.strongest(test.values());
+  const Candidate best = test.strongest(test.values()).own;
   const Eigen::VectorXd y = test.values()[0];
   const auto sum_of_squares = [&](const Eigen::MatrixXd& X) {
     return (y - X * X.colPivHouseholderQr().solve(y)).squaredNorm();
