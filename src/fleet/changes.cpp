@@ -34,7 +34,7 @@ std::vector<double> null_maxima(const std::vector<PanelTest>& tests, const Chang
       std::vector<Eigen::VectorXd> z;
       for (const WhitenedUnit& unit : test.units())
         z.push_back(Eigen::VectorXd::NullaryExpr(unit.z.size(), [&] { return draw_t(random, nu); }));
-      maxima[i] = std::max(maxima[i], test.strongest(z).statistic);
+      maxima[i] = std::max(maxima[i], test.strongest(z).statistic());
     }
   });
   std::ranges::sort(maxima);
@@ -60,6 +60,13 @@ double scale_of(const std::vector<Observations>& all, const Scatter& scatter) {
   return fit_robustly(units, z).scale;
 }
 
+/// Robust -2 log-likelihood of one unit, without log|V|.
+double cost_of_unit(const Panel& panel, std::size_t u, const std::vector<Change>& changes, const Scatter& scatter) {
+  const std::vector<WhitenedUnit> unit{whiten(design_of(panel.series[u], u, changes).observations, scatter)};
+  const RobustFit fit = fit_robustly(unit, {unit[0].z});
+  return loss(fit.residuals[0] * fit.scale);
+}
+
 /// The search in one panel.
 class Search {
  public:
@@ -69,9 +76,9 @@ class Search {
     for (int round = 0; round < kMostRounds; ++round) {
       estimate_scatter();
       const PanelTest test(panel_, model_.changes, model_.scatter, {});
-      const Candidate best = test.strongest(test.values());
-      if (best.statistic <= threshold_) break;
-      add(test, best);
+      const Strongest best = test.strongest(test.values());
+      if (best.statistic() <= threshold_) break;
+      add(test, best.shared.statistic > threshold_ && is_broad(test, best.shared) ? best.shared : best.own);
       prune();
     }
     estimate_scatter();
@@ -93,12 +100,8 @@ class Search {
                                 : robust_scatter(panel_, model_.changes, {});
   }
 
-  /// Robust -2 log-likelihood of one unit, or all, at the present scatter.
   [[nodiscard]] double unit_cost(std::size_t u, const std::vector<Change>& changes) const {
-    const Observations o = design_of(panel_.series[u], u, changes).observations;
-    const std::vector<WhitenedUnit> unit{whiten(o, model_.scatter)};
-    const RobustFit fit = fit_robustly(unit, {unit[0].z});
-    return loss(fit.residuals[0] * fit.scale);
+    return cost_of_unit(panel_, u, changes, model_.scatter);
   }
   [[nodiscard]] double cost(const std::vector<Change>& changes) const {
     double sum = 0.0;
@@ -108,6 +111,7 @@ class Search {
 
   [[nodiscard]] std::vector<double> gaps(const Change& change) const;
   void add(const PanelTest& test, const Candidate& best);
+  [[nodiscard]] static bool is_broad(const PanelTest& test, const Candidate& shared);
   [[nodiscard]] Change step_or_drift(const Candidate& best) const;
   void prune();
 
@@ -126,7 +130,18 @@ std::vector<double> Search::gaps(const Change& change) const {
   return {dates.begin(), dates.end()};
 }
 
-/// What one unit shows may be a step or a drift; a step has a date that was chosen among many, and pays for it.
+/// Whether more than one or two units make a sum what it is: what three show together is one event, not three.
+bool Search::is_broad(const PanelTest& test, const Candidate& shared) {
+  constexpr double kSeen = 6.635;  // chi-square with one degree of freedom, 1 %
+  std::vector<double> statistics = test.of_units(shared);
+  if (std::ranges::count_if(statistics, [](double s) { return s > kSeen; }) >= 3) return true;
+  double sum = 0.0;
+  for (const double s : statistics) sum += std::sqrt(s);
+  return std::sqrt(std::ranges::max(statistics)) < 0.25 * sum;
+}
+
+/// What one unit shows may be a step or a drift. The evidence of a step is the mean over its dates; a lever arm or a mounting
+/// moves, and hardly ever drifts.
 Change Search::step_or_drift(const Candidate& best) const {
   Change change;
   change.units = {best.unit};
@@ -134,19 +149,23 @@ Change Search::step_or_drift(const Candidate& best) const {
   with.push_back(change);
   Change& trial = with.back();
   const std::vector<double> dates = gaps(change);
+  constexpr double kMovesPrice = 6.0;  // odds of 20 to 1
   trial.kind = ChangeKind::kDrift;
-  double least = unit_cost(best.unit, with);
-  change.kind = ChangeKind::kDrift;
-  const double price = 2.0 * std::log(static_cast<double>(std::max<std::size_t>(dates.size() - 5, 1)));
+  const bool moves = panel_.quantity.starts_with("lever_arm") || panel_.quantity.starts_with("mounting");
+  const double of_drift = unit_cost(best.unit, with) + (moves ? kMovesPrice : 0.0);
   trial.kind = ChangeKind::kStep;
+  double least = std::numeric_limits<double>::infinity();
+  std::vector<double> costs;
   for (std::size_t k = 3; k + 3 <= dates.size(); ++k) {
     trial.t = 0.5 * (dates[k - 1] + dates[k]);
-    if (const double value = unit_cost(best.unit, with) + price; value < least) {
-      least = value;
-      change.kind = ChangeKind::kStep;
-      change.t = trial.t;
-    }
+    costs.push_back(unit_cost(best.unit, with));
+    if (costs.back() >= least) continue;
+    least = costs.back();
+    change.t = trial.t;
   }
+  double evidence = 0.0;
+  for (const double cost : costs) evidence += std::exp(-0.5 * (cost - least)) / static_cast<double>(costs.size());
+  change.kind = !costs.empty() && least - 2.0 * std::log(evidence) < of_drift ? ChangeKind::kStep : ChangeKind::kDrift;
   return change;
 }
 
@@ -300,6 +319,40 @@ PanelChanges search_panel(const Panel& panel, const std::vector<double>& null, d
   for (const Observations& o : observations_of(panel, model.changes, {}))
     model.walk_gain += restricted_log_likelihood(o, model.scatter) - restricted_log_likelihood(o, {model.scatter.tau, 0.0});
   return model;
+}
+
+/// Whether a unit has a step already whose date may be that of another one.
+bool has_step(const PanelChanges& model, std::size_t unit, const Change& other) {
+  return std::ranges::any_of(model.changes, [&](const Change& c) {
+    return c.kind == ChangeKind::kStep && std::ranges::find(c.units, unit) != c.units.end() &&
+           c.t_95.first <= other.t_95.second && other.t_95.first <= c.t_95.second;
+  });
+}
+
+/// A step of one unit in one axis: the other axes of the quantity have it too where it is seen there at 1 %, at this date. This
+/// adds no false alarm, as the event is told already.
+void extend_to_other_axes(const Fleet& fleet, std::vector<PanelChanges>& models) {
+  constexpr double kSeen = 6.635;  // chi-square with one degree of freedom, 1 %
+  const std::vector<PanelChanges> found = models;
+  for (std::size_t p = 0; p < found.size(); ++p)
+    for (std::size_t q = 0; q < found.size(); ++q) {
+      const Panel& panel = fleet.panels[q];
+      if (p == q || panel.quantity != fleet.panels[p].quantity) continue;
+      for (const Change& change : found[p].changes) {
+        if (change.kind != ChangeKind::kStep || change.units.size() != 1) continue;
+        const auto same = std::ranges::find(panel.series, fleet.panels[p].series[change.units[0]].unit, &Series::unit);
+        if (same == panel.series.end()) continue;
+        const auto u = static_cast<std::size_t>(same - panel.series.begin());
+        if (has_step(models[q], u, change)) continue;
+        std::vector<Change> with = models[q].changes;
+        with.push_back(change);
+        with.back().units = {u};
+        const double gain =
+            cost_of_unit(panel, u, models[q].changes, models[q].scatter) - cost_of_unit(panel, u, with, models[q].scatter);
+        with.back().statistic = gain;
+        if (gain > kSeen) models[q].changes = std::move(with);
+      }
+    }
 }
 
 std::vector<LeftOut> none_left_out(const Fleet& fleet) {

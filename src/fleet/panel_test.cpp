@@ -184,9 +184,9 @@ void PanelTest::shared_steps(const std::vector<Eigen::VectorXd>& scores, Candida
   }
 }
 
-Candidate PanelTest::strongest(const std::vector<Eigen::VectorXd>& z) const {
+Strongest PanelTest::strongest(const std::vector<Eigen::VectorXd>& z) const {
   const std::vector<Eigen::VectorXd> found = scores(z);
-  Candidate best;
+  Strongest best;
   Sum drift;
   std::vector<Sum> of_levels(levels_.size());
   for (std::size_t u = 0; u < units_.size(); ++u) {
@@ -204,14 +204,14 @@ Candidate PanelTest::strongest(const std::vector<Eigen::VectorXd>& z) const {
       if (!tested.for_unit[static_cast<std::size_t>(j)]) continue;
       const auto k = static_cast<std::size_t>(j);
       const double t = j == 0 ? 0.0 : 0.5 * (tested.dates[k - 1] + tested.dates[k]);
-      consider(best, {found[u][j], tested.energy[j], 1},
+      consider(best.own, {found[u][j], tested.energy[j], 1},
                {j == 0 ? ChangeKind::kDrift : ChangeKind::kStep, false, u, t, 0, "", 0.0});
     }
   }
-  if (drift.units >= kFewestShared) consider(best, drift, {ChangeKind::kDrift, true, 0, 0.0, 0, "", 0.0});
+  if (drift.units >= kFewestShared) consider(best.shared, drift, {ChangeKind::kDrift, true, 0, 0.0, 0, "", 0.0});
   for (std::size_t l = 0; l < levels_.size(); ++l)
-    consider(best, of_levels[l], {ChangeKind::kGroupLevel, true, 0, 0.0, levels_[l].factor, levels_[l].name, 0.0});
-  shared_steps(found, best);
+    consider(best.shared, of_levels[l], {ChangeKind::kGroupLevel, true, 0, 0.0, levels_[l].factor, levels_[l].name, 0.0});
+  shared_steps(found, best.shared);
   return best;
 }
 

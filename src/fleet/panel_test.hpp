@@ -3,6 +3,7 @@
 // threshold includes whatever the tests do: robust fits, and the scale found from the values themselves.
 
 #include <Eigen/Core>
+#include <algorithm>
 #include <cstddef>
 #include <string>
 #include <vector>
@@ -20,6 +21,13 @@ struct Candidate {
   std::size_t factor = 0;
   std::string level;
   double statistic = 0.0;
+};
+
+/// The candidates with the largest statistics; 0 where nothing can be tested.
+struct Strongest {
+  Candidate own;     ///< of one unit
+  Candidate shared;  ///< of the sum over all units
+  [[nodiscard]] double statistic() const { return std::max(own.statistic, shared.statistic); }
 };
 
 /// One unit, whitened: z = L^-1 y, and an orthonormal basis of L^-1 X.
@@ -48,8 +56,7 @@ class PanelTest {
   [[nodiscard]] const std::vector<WhitenedUnit>& units() const { return units_; }
   /// The values of the fleet, whitened.
   [[nodiscard]] std::vector<Eigen::VectorXd> values() const;
-  /// The candidate with the largest statistic; statistic 0 where nothing can be tested.
-  [[nodiscard]] Candidate strongest(const std::vector<Eigen::VectorXd>& z) const;
+  [[nodiscard]] Strongest strongest(const std::vector<Eigen::VectorXd>& z) const;
   /// The statistic of each unit by itself for what a candidate says.
   [[nodiscard]] std::vector<double> of_units(const Candidate& candidate) const;
 

@@ -90,7 +90,7 @@ Tails heaviest_tails(const std::vector<double>& values) {
   constexpr double kNormal95 = 2.7055;  // chi-square with one degree of freedom, 90 %: one-sided 95 %
   constexpr int kSteps = 40;
   constexpr double kMost = 0.4;  // 1/nu
-  Tails tails{std::numeric_limits<double>::infinity(), 1.0};
+  Tails tails;
   if (values.empty()) return tails;
   std::vector<double> likelihood(kSteps + 1);
   std::vector<double> scales(kSteps + 1);

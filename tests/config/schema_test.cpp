@@ -26,7 +26,7 @@ TEST(Schemas, AreOfOneDraft) {
 
 TEST(Schemas, OwnExamplesAreValid) {
   for (const char* name :
-       {"calibration", "calibration_run", "campaign", "diagnosis", "estimator_study", "estimator_study_result",
+       {"calibration", "calibration_run", "campaign", "diagnosis", "estimator_study", "estimator_study_result", "fleet",
         "imu_calibration", "imu_error_model", "outage", "ppk", "ppk_result", "run", "scenario", "study", "summary", "tumble"}) {
     const json examples = test::schema(name).at("examples");
     ASSERT_FALSE(examples.empty()) << name;

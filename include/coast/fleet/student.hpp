@@ -1,6 +1,7 @@
 #pragma once
 // Student's t distribution with any real degrees of freedom, and the tails of a sample.
 
+#include <limits>
 #include <vector>
 
 namespace coast::fleet {
@@ -14,8 +15,8 @@ namespace coast::fleet {
 
 /// Degrees of freedom and scale of t-distributed values about zero.
 struct Tails {
-  double nu = 0.0;     ///< infinity: normal
-  double scale = 1.0;  ///< of the t distribution
+  double nu = std::numeric_limits<double>::infinity();  ///< infinity: normal
+  double scale = 1.0;                                   ///< of the t distribution
 };
 /// Heaviest tails that the values do not contradict: the lower end of a one-sided 95 % profile interval of nu, from 2.5 to
 /// infinity, with the scale that goes with it. Without values: normal, scale 1.
