@@ -7,6 +7,7 @@
 
 #include "coast/io/input.hpp"
 #include "coast/record/error.hpp"
+#include "novatel/novatel_log.hpp"
 #include "text.hpp"
 
 namespace coast::io {
@@ -40,6 +41,10 @@ std::optional<FileKind> binary_kind(std::string_view head) {
   if (head.find("\xb5\x62") != std::string_view::npos)  // NMEA sentences may be between its messages
     return FileKind{
         "a UBX file of a u-blox receiver",
+        "It belongs under `gnss: {file: ..}`, `imu: {file: ..}`, or `gnss: {ppk: {rover: .., base: .., nav: [..]}}`."};
+  if (begins_as_novatel(head))
+    return FileKind{
+        "a log of a NovAtel receiver",
         "It belongs under `gnss: {file: ..}`, `imu: {file: ..}`, or `gnss: {ppk: {rover: .., base: .., nav: [..]}}`."};
   return std::nullopt;
 }
