@@ -31,7 +31,8 @@ struct BinaryLayout {
 ///
 ///     imu:
 ///       file: imu.csv.gz
-///       format: auto                       # or csv (any delimiter) | kf-gins | imr | ubx | vectornav | ulog | binary
+///       format: auto                       # or csv (any delimiter) | kf-gins | imr | ubx | vectornav | ulog |
+///                                          # novatel | binary
 ///       gps_week: 2374
 ///       columns: {time: tow_s, gyro: [5, 6, 7], accel: [fx, fy, fz], temperature: T}     # names, or numbers from 1
 ///       units: {gyro: deg/s, accel: g}     # of rates; with `values: increments`: rad | deg, m/s

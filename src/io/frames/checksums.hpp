@@ -13,7 +13,8 @@ namespace coast::io {
 /// CRC-16 of VectorNav: CCITT polynomial 0x1021, begins with 0; 0 over a message with its CRC, high byte first.
 [[nodiscard]] std::uint16_t crc16_ccitt(std::string_view bytes);
 
-/// CRC-32 of NovAtel: polynomial 0x04C11DB7 with the bits of each byte from the lowest on, begins with 0, not inverted at the end.
+/// CRC-32 of NovAtel: polynomial 0x04C11DB7 with the bits of each byte from the lowest on, begins with 0, not inverted at the
+/// end.
 [[nodiscard]] std::uint32_t crc32_novatel(std::string_view bytes);
 
 }  // namespace coast::io

@@ -18,8 +18,8 @@ inline constexpr std::size_t kProtocols = 6;
 [[nodiscard]] std::string frame_name(Protocol protocol, std::uint32_t id);
 
 /// One message. UBX: the id is class * 256 + id; NMEA: the three letters of the sentence, or PUB of $PUBX; RTCM 3: the message
-/// number; VectorNav: the byte of the groups, with which the payload begins; NovAtel: the message ID, and the payload begins with
-/// the header's sync byte.
+/// number; VectorNav: the byte of the groups, with which the payload begins; NovAtel: the message ID, and the payload begins
+/// with the first byte of the frame.
 struct MessageFrame {
   Protocol protocol = Protocol::kUbx;
   std::uint32_t id = 0;
