@@ -8,6 +8,7 @@
 #include "bags/bag_stream.hpp"
 #include "coast/io/input.hpp"
 #include "coast/record/error.hpp"
+#include "novatel/novatel_log.hpp"
 #include "rtcm/rtcm_messages.hpp"
 #include "sbf/sbf_blocks.hpp"
 #include "text.hpp"
@@ -48,6 +49,7 @@ std::optional<FileKind> binary_kind(std::string_view head) {
   constexpr std::string_view kOfReceiver =
       "It belongs under `gnss: {file: ..}`, `imu: {file: ..}`, or `gnss: {ppk: {rover: .., base: .., nav: [..]}}`.";
   if (begins_as_sbf(head)) return FileKind{"an SBF file of a Septentrio receiver", std::string(kOfReceiver)};
+  if (begins_as_novatel(head)) return FileKind{"a log of a NovAtel receiver", std::string(kOfReceiver)};
   if (head.find("\xb5\x62") != std::string_view::npos)  // NMEA sentences may be between its messages
     return FileKind{"a UBX file of a u-blox receiver", std::string(kOfReceiver)};
   return std::nullopt;

@@ -34,7 +34,7 @@ struct PositionOptions {
 ///
 ///     gnss:
 ///       file: gnss.pos
-///       format: auto                       # or rtklib-pos | kf-gins | csv (any delimiter) | ubx | sbf | vectornav | ulog
+///       format: auto                       # or rtklib-pos | kf-gins | csv (any delimiter), or a receiver's own
 ///       columns: {time: t, position: [lat, lon, h], sd: [5, 6, 7], velocity: [vn, ve, vd], velocity_sd: [..],
 ///                 quality: Q, satellites: ns}
 ///       frame: geodetic                    # or ecef | utm | ned | enu

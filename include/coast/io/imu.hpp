@@ -31,7 +31,7 @@ struct BinaryLayout {
 ///
 ///     imu:
 ///       file: imu.csv.gz
-///       format: auto                       # or csv (any delimiter) | kf-gins | imr | ubx | sbf | vectornav | ulog | binary
+///       format: auto                       # or csv (any delimiter) | kf-gins | imr | binary, or a receiver's own
 ///       gps_week: 2374
 ///       columns: {time: tow_s, gyro: [5, 6, 7], accel: [fx, fy, fz], temperature: T}     # names, or numbers from 1
 ///       units: {gyro: deg/s, accel: g}     # of rates; with `values: increments`: rad | deg, m/s

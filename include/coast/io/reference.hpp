@@ -27,7 +27,7 @@ struct AttitudeOptions {
 ///
 ///     reference:
 ///       file: truth.nav
-///       format: auto                       # or nav | csv (any delimiter) | sbet
+///       format: auto                       # or nav | csv (any delimiter) | sbet | novatel
 ///       columns: {time: 1, position: [2, 3, 4], velocity: [..], euler: [roll, pitch, yaw]}       # or quaternion: [x, y, z, w]
 ///       attitude_to: ned                   # or enu
 ///       body_axes: frd                     # or flu

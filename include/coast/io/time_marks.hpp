@@ -42,6 +42,7 @@ struct TimeMarkFileOptions {
 /// - UBX: both edges of UBX-TIM-TM2 in GPS time. Marks without valid time, or in the receiver's own time, are counted and left
 ///   out, with an event.
 /// - SBF: edges of ExtEvent in GPS time; those without the bias of the receiver's clock likewise.
+/// - NovAtel: MARKTIME, MARK1TIME to MARK4TIME, MARK1PVA to MARK4PVA in GPS time; without valid time as above.
 /// - RINEX observations: event records with flag 5, in the time scale of the observations.
 /// - Tables: every row; rows whose numbers are empty or not finite are counted and left out, with an event.
 ///

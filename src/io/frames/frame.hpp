@@ -19,7 +19,7 @@ inline constexpr std::size_t kProtocols = 7;
 
 /// One message. UBX: the id is class * 256 + id; NMEA: the three letters of the sentence, or PUB of $PUBX; RTCM 3: the message
 /// number; VectorNav: the byte of the groups, with which the payload begins; SBF: the number of the block without its revision;
-/// NovAtel: the message ID, and the payload begins with the header's sync byte.
+/// NovAtel: the message ID, and the payload begins with the first byte of the frame.
 struct MessageFrame {
   Protocol protocol = Protocol::kUbx;
   std::uint32_t id = 0;

@@ -79,8 +79,7 @@ record::TimeMarkRecording read_novatel_time_marks(const std::filesystem::path& f
                       "MARKTIME, MARK1TIME to MARK4TIME, or MARK1PVA to MARK4PVA", ""});
   std::ranges::stable_sort(recording.marks, {}, &record::TimeMark::t);
   const auto same = [](const record::TimeMark& a, const record::TimeMark& b) { return a.t == b.t && a.channel == b.channel; };
-  const auto repeated = std::ranges::unique(recording.marks, same);
-  recording.marks.erase(repeated.begin(), repeated.end());
+  recording.marks.erase(std::unique(recording.marks.begin(), recording.marks.end(), same), recording.marks.end());
   add_counted(recording.events, recording.source, left_out,
               {"time_mark_invalid", "time mark", "time marks", "without a valid GPS time left out"});
   return recording;
