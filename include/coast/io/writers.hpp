@@ -101,21 +101,13 @@ void write_imu_csv(const std::filesystem::path& path, const record::ImuRecording
 void write_gnss_csv(const std::filesystem::path& path, const record::GnssRecording& gnss);
 /// Time marks as CSV: gps_week, sow_s, sd_s (empty: not stated), channel, edge, count, id.
 void write_time_marks_csv(const std::filesystem::path& path, const record::TimeMarkRecording& marks);
-
-/// How write_mcap names and packs.
-struct McapOptions {
-  std::string imu_topic = "/imu";
-  std::string gnss_topic = "/fix";
-  bool compressed = true;  ///< chunks are LZ4 frames
-};
-/// A bag of ROS 2 as MCAP: the IMU as sensor_msgs/msg/Imu, mean rates and specific forces over each interval in the axes of the
-/// recording, without attitude; positions as sensor_msgs/msg/NavSatFix with their covariance. Stamps are POSIX times, to 1 ns.
-/// Not carried: temperatures, velocities, numbers of satellites; float and fixed ambiguities both become ground-based
-/// augmentation.
+/// A bag of ROS 2 as MCAP: the IMU as sensor_msgs/msg/Imu on /imu, mean rates and specific forces over each interval in the
+/// axes of the recording, without attitude; positions as sensor_msgs/msg/NavSatFix on /fix with their covariance. Stamps are
+/// POSIX times, to 1 ns. Not carried: temperatures, velocities, numbers of satellites; float and fixed ambiguities both become
+/// ground-based augmentation.
 /// @param imu, gnss  null: none
 /// @throws OutputError
-void write_mcap(const std::filesystem::path& path, const record::ImuRecording* imu, const record::GnssRecording* gnss,
-                const McapOptions& options = {});
+void write_mcap(const std::filesystem::path& path, const record::ImuRecording* imu, const record::GnssRecording* gnss);
 /// First component of an aiding sensor's samples as CSV: gps_week, sow_s and a column of that name.
 void write_aid_csv(const std::filesystem::path& path, const record::AidRecording& aid, std::string_view column);
 

@@ -91,8 +91,8 @@ struct McapChannel {
 /// Chunks and the summary of one file.
 class McapFile {
  public:
-  McapFile(const std::filesystem::path& path, bool compressed, std::vector<McapChannel> channels)
-      : file_(path), compressed_(compressed), channels_(std::move(channels)), counts_(channels_.size()) {
+  McapFile(const std::filesystem::path& path, std::vector<McapChannel> channels)
+      : file_(path), channels_(std::move(channels)), counts_(channels_.size()) {
     put(kMcapMagic);
     put(McapRecord().text("ros2").text("coast").record(McapOp::kHeader));
     chunk_ = definitions();
@@ -136,7 +136,7 @@ class McapFile {
     crc_ = mcap_crc(bytes, crc_);
     at_ += bytes.size();
   }
-  [[nodiscard]] std::string_view compression() const { return compressed_ ? "lz4" : ""; }
+  static constexpr std::string_view kCompression = "lz4";
   [[nodiscard]] std::uint64_t messages() const {
     std::uint64_t sum = 0;
     for (const std::uint64_t count : counts_) sum += count;
@@ -174,7 +174,7 @@ class McapFile {
     chunk.first = first_in_chunk_;
     chunk.last = last_;
     chunk.at = at_;
-    const std::string packed = compressed_ ? pack_lz4(chunk_) : chunk_;
+    const std::string packed = pack_lz4(chunk_);
     chunk.packed = packed.size();
     chunk.unpacked = chunk_.size();
     put(McapRecord()
@@ -182,7 +182,7 @@ class McapFile {
             .number(chunk.last)
             .number(chunk.unpacked)
             .number(mcap_crc(chunk_))
-            .text(compression())
+            .text(kCompression)
             .number(chunk.packed)
             .raw(packed)
             .record(McapOp::kChunk));
@@ -226,7 +226,7 @@ class McapFile {
                      .number(chunk.size)
                      .text(places.fields())
                      .number(chunk.index_size)
-                     .text(compression())
+                     .text(kCompression)
                      .number(chunk.packed)
                      .number(chunk.unpacked)
                      .record(McapOp::kChunkIndex);
@@ -261,7 +261,6 @@ class McapFile {
   }
 
   AtomicFile file_;
-  bool compressed_;
   std::vector<McapChannel> channels_;
   std::vector<std::uint64_t> counts_;  ///< messages by channel
   std::uint64_t at_ = 0;
@@ -315,13 +314,12 @@ std::string ros_fix_message(const record::GnssFix& fix, std::int64_t ns) {
 
 }  // namespace
 
-void write_mcap(const std::filesystem::path& path, const record::ImuRecording* imu, const record::GnssRecording* gnss,
-                const McapOptions& options) {
+void write_mcap(const std::filesystem::path& path, const record::ImuRecording* imu, const record::GnssRecording* gnss) {
   const bool with_imu = imu != nullptr, with_gnss = gnss != nullptr;
   std::vector<McapChannel> channels;
-  if (with_imu) channels.push_back({options.imu_topic, "sensor_msgs/msg/Imu", kRosImuSchema});
-  if (with_gnss) channels.push_back({options.gnss_topic, "sensor_msgs/msg/NavSatFix", kRosFixSchema});
-  McapFile file(path, options.compressed, std::move(channels));
+  if (with_imu) channels.push_back({"/imu", "sensor_msgs/msg/Imu", kRosImuSchema});
+  if (with_gnss) channels.push_back({"/fix", "sensor_msgs/msg/NavSatFix", kRosFixSchema});
+  McapFile file(path, std::move(channels));
   const std::size_t gnss_channel = with_imu ? 1 : 0;
   std::size_t i = 0, k = 0;
   const std::size_t samples = with_imu ? imu->samples.size() : 0, fixes = with_gnss ? gnss->fixes.size() : 0;
