@@ -253,34 +253,35 @@ class Database {
 
 TEST(RosBag, InSqliteIsRead) {
   const Files files;
-  {
-    const Database base(files.path("drive.db3"));
-    base.topic(0, "/imu/data", "sensor_msgs/msg/Imu");
-    base.topic(1, "/fix", "sensor_msgs/msg/NavSatFix");
-    base.topic(2, "/image", "sensor_msgs/msg/Image");
-    base.message({2, kBagStart, std::string(100000, 'x')});
-    for (BagEntry entry : drive(kCdrLittle, 0, 200)) {
-      if (compressed) entry.bytes = zstd(entry.bytes);
-      base.message(entry);
+  for (const bool compressed : {true, false}) {
+    {
+      const Database base(files.path("drive.db3"));
+      base.topic(0, "/imu/data", "sensor_msgs/msg/Imu");
+      base.topic(1, "/fix", "sensor_msgs/msg/NavSatFix");
+      base.topic(2, "/image", "sensor_msgs/msg/Image");
+      base.message({2, kBagStart, std::string(100000, 'x')});
+      for (BagEntry entry : drive(kCdrLittle, 0, 200)) {
+        if (compressed) entry.bytes = zstd(entry.bytes);
+        base.message(entry);
+      }
+      base.message({7, kBagStart, "no such topic"});
     }
-    base.message({7, kBagStart, "no such topic"});
+    expect_drive(files, "drive.db3");
+    EXPECT_EQ(test::count_of(files.imu("drive.db3").events, "bag_undefined"), 1);
   }
-  expect_drive(files, "drive.db3");
-  EXPECT_EQ(test::count_of(files.imu("drive.db3").events, "bag_undefined"), 1);
+  // Pages that are not there: what is before them is read.
+  const std::string bytes = files.get("drive.db3");
+  files.put("cut.db3", bytes.substr(0, bytes.size() - std::size_t{12} * 4096));
+  const auto cut = files.imu("cut.db3");
+  EXPECT_GT(cut.samples.size(), 10U);
+  EXPECT_LT(cut.samples.size(), 200U);
+  EXPECT_EQ(test::count_of(cut.events, "bag_cut_off"), 1);
+  {
+    const Database base(files.path("empty.db3"));
+    base.run("DROP TABLE messages");
+  }
+  EXPECT_NE(refusal([&] { (void)files.imu("empty.db3"); }).find("without the table `messages`"), std::string::npos);
 }
-// Pages that are not there: what is before them is read.
-const std::string bytes = files.get("drive.db3");
-files.put("cut.db3", bytes.substr(0, bytes.size() - std::size_t{12} * 4096));
-const auto cut = files.imu("cut.db3");
-EXPECT_GT(cut.samples.size(), 10U);
-EXPECT_LT(cut.samples.size(), 200U);
-EXPECT_EQ(test::count_of(cut.events, "bag_cut_off"), 1);
-{
-  const Database base(files.path("empty.db3"));
-  base.run("DROP TABLE messages");
-}
-EXPECT_NE(refusal([&] { (void)files.imu("empty.db3"); }).find("without the table `messages`"), std::string::npos);
-}  // namespace
 
 TEST(RosBag, WithSeveralTopicsAsksForOne) {
   const Files files;
@@ -490,33 +491,32 @@ TEST(McapWriter, WritesWhatTheReaderReturns) {
   record::ImuRecording imu;
   record::GnssRecording gnss;
   some_recording(imu, gnss);
-  for (const bool compressed : {true, false}) {
-    write_mcap(files.path("drive.mcap"), &imu, &gnss);
-    const auto imu_again = files.imu("drive.mcap", "topic: /imu");
-    ASSERT_EQ(imu_again.samples.size(), imu.samples.size());
-    EXPECT_TRUE(imu_again.events.empty());
-    for (std::size_t i = 0; i < imu.samples.size(); ++i) {
-      const record::ImuSample &a = imu.samples[i], &b = imu_again.samples[i];
-      ASSERT_EQ(a.t, b.t);
-      // The file has the rates; the interval of b is from stamp to stamp, the same ns.
-      ASSERT_EQ(b.dt, 0.005);
-      ASSERT_EQ((a.dtheta / a.dt * 0.005 - b.dtheta).norm(), 0.0);
-      ASSERT_EQ((a.dv / a.dt * 0.005 - b.dv).norm(), 0.0);
-    }
-    const auto gnss_again = files.gnss("drive.mcap");
-    ASSERT_EQ(gnss_again.fixes.size(), gnss.fixes.size());
-    for (std::size_t i = 0; i < gnss.fixes.size(); ++i) {
-      ASSERT_EQ(gnss_again.fixes[i].t, gnss.fixes[i].t);
-      // Through degrees: rounding at 180 deg is 3e-14 deg, 3 nm.
-      ASSERT_LT((gnss_again.fixes[i].r_ea_e - gnss.fixes[i].r_ea_e).norm(), 1e-8);
-      ASSERT_EQ(gnss_again.fixes[i].position_cov_n, gnss.fixes[i].position_cov_n);
-    }
-    const auto contents = read_contents(files.path("drive.mcap"));
-    EXPECT_EQ(contents.messages.size(), 2U);
-    write_mcap(files.path("gnss.mcap"), nullptr, &gnss);
-    EXPECT_EQ(files.gnss("gnss.mcap").fixes.size(), gnss.fixes.size());
-    EXPECT_NE(refusal([&] { (void)files.imu("gnss.mcap"); }), "");
+  write_mcap(files.path("drive.mcap"), &imu, &gnss);
+  const auto imu_again = files.imu("drive.mcap", "topic: /imu");
+  ASSERT_EQ(imu_again.samples.size(), imu.samples.size());
+  EXPECT_TRUE(imu_again.events.empty());
+  for (std::size_t i = 0; i < imu.samples.size(); ++i) {
+    const record::ImuSample &a = imu.samples[i], &b = imu_again.samples[i];
+    ASSERT_EQ(a.t, b.t);
+    // The file has the rates; the interval of b is from stamp to stamp, the same ns.
+    ASSERT_EQ(b.dt, 0.005);
+    ASSERT_EQ((a.dtheta / a.dt * 0.005 - b.dtheta).norm(), 0.0);
+    ASSERT_EQ((a.dv / a.dt * 0.005 - b.dv).norm(), 0.0);
   }
+  const auto gnss_again = files.gnss("drive.mcap");
+  ASSERT_EQ(gnss_again.fixes.size(), gnss.fixes.size());
+  for (std::size_t i = 0; i < gnss.fixes.size(); ++i) {
+    ASSERT_EQ(gnss_again.fixes[i].t, gnss.fixes[i].t);
+    // Through degrees: rounding at 180 deg is 3e-14 deg, 3 nm.
+    ASSERT_LT((gnss_again.fixes[i].r_ea_e - gnss.fixes[i].r_ea_e).norm(), 1e-8);
+    ASSERT_EQ(gnss_again.fixes[i].position_cov_n, gnss.fixes[i].position_cov_n);
+  }
+  const auto contents = read_contents(files.path("drive.mcap"));
+  EXPECT_EQ(contents.messages.size(), 2U);
+  write_mcap(files.path("gnss.mcap"), nullptr, &gnss);
+  EXPECT_EQ(files.gnss("gnss.mcap").fixes.size(), gnss.fixes.size());
+  EXPECT_NE(refusal([&] { (void)files.imu("gnss.mcap"); }), "");
+}
 
 }  // namespace
 }  // namespace coast::io
