@@ -1,5 +1,6 @@
 #include "sbf_blocks.hpp"
 
+#include <algorithm>
 #include <array>
 
 namespace coast::io {

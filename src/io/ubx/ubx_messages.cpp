@@ -1,6 +1,7 @@
 #include "ubx_messages.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <stdexcept>
 
@@ -71,8 +72,11 @@ std::optional<geo::GpsTime> first_stated_time(const std::filesystem::path& file)
 }
 
 record::Events ubx_file_events(const FrameCensus& census, const std::string& file) {
-  return file_events(census, file,
-                     [](Protocol protocol, std::uint32_t id) { return protocol == Protocol::kUbx && is_read(id); });
+  static constexpr std::array kRead = {ubx::kNavPvt,  ubx::kNavHpPosLlh, ubx::kNavTimeGps, ubx::kNavCov,  ubx::kRxmSfrbx,
+                                       ubx::kRxmRawx, ubx::kMonVer,      ubx::kTimTm2,     ubx::kEsfMeas, ubx::kEsfRaw};
+  return file_events(census, file, [](Protocol protocol, std::uint32_t id) {
+    return protocol == Protocol::kUbx && std::ranges::find(kRead, id) != kRead.end();
+  });
 }
 
 bool begins_as_ubx(std::string_view head) {
