@@ -20,9 +20,9 @@ def rows(name, summary, hour):
         yield row("lever_arm", axis, value, sigma, "m")
     yield row("time_offset", "", summary["gnss"]["time_offset_s"], summary["gnss"]["time_offset_sd_s"], "s")
     for state, estimate in summary["states_at_end"].items():
-        channel, process = state.split()
-        sensor, axis = channel.split("_")
+        channel, _, process = state.partition(" ")
         if process == "random_constant":
+            sensor, axis = channel.split("_")
             yield row(UNITS[sensor][0], axis, estimate["value"], estimate["sd"], UNITS[sensor][1])
 
 
