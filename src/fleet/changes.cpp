@@ -412,6 +412,7 @@ FleetChanges find_changes(const Fleet& fleet, const ChangeOptions& options, cons
     tell(0.4 + 0.5 * pass);
     coast::parallel_for(std::size_t{0}, fleet.panels.size(),
                         [&](std::size_t p) { result.panels[p] = search_panel(fleet.panels[p], null, result.threshold); });
+    extend_to_other_axes(fleet, result.panels);
     left_out = none_left_out(fleet);
     result.departures = find_departures(fleet, result.panels, 0.5 * options.false_alarm_probability, left_out, tails);
     if (std::ranges::all_of(result.panels, [](const PanelChanges& panel) { return panel.changes.empty(); })) break;

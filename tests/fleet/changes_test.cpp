@@ -26,7 +26,7 @@ TEST(PanelTest, StatisticIsLeastSquaresWhereNothingIsClipped) {
   Panel panel{"bias", "", "m", {{"u", {}}}};
   for (int i = 0; i < 10; ++i) {
     Estimate e;
-    e.mission = std::to_string(i);
+    e.mission = fmt::format("{}", i);
     e.t = 0.2 * i;
     e.sigma = 1.0;
     e.value = (i % 2 == 0 ? 1.0 : -1.0) + (i >= 6 ? 0.3 : 0.0);

@@ -1,6 +1,9 @@
 #pragma once
 // Fleets that are drawn: known scatter, and what a test adds.
 
+#include <fmt/format.h>
+
+#include <algorithm>
 #include <cmath>
 #include <random>
 #include <string>
@@ -22,11 +25,11 @@ inline fleet::Fleet drawn_fleet(std::uint64_t seed, int units = 12, int missions
     std::sort(dates.begin(), dates.end());
     for (fleet::Panel& panel : all.panels) {
       fleet::Series& series = panel.series.emplace_back();
-      series.unit = "u" + std::to_string(u);
+      series.unit = fmt::format("u{}", u);
       const double level = 20.0 * normal(random);
       for (std::size_t m = 0; m < dates.size(); ++m) {
         fleet::Estimate e;
-        e.mission = series.unit + "-" + std::to_string(m);
+        e.mission = fmt::format("{}-{}", series.unit, m);
         e.t = dates[m];
         e.sigma = std::exp(0.4 * normal(random));
         e.temperature = 12.0 - 10.0 * std::cos(2.0 * 3.14159265358979 * e.t) + 4.0 * normal(random);
