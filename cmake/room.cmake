@@ -58,14 +58,19 @@ function(coast_room_tests room)
   gtest_discover_tests(coast_${room}_tests NO_PRETTY_VALUES DISCOVERY_MODE PRE_TEST PROPERTIES LABELS ${room})
 endfunction()
 
-# coast_fuzzer(<name> SOURCES <files> [DEPS <targets>]): one libFuzzer program, coast_fuzz_<name>; its corpus is
-# tests/fuzz/corpus/<name>/. Nothing without COAST_FUZZ.
-function(coast_fuzzer name)
+# coast_fuzzers(NAMES <entries> SOURCES <files> [DEPS <targets>]): one libFuzzer program, which tells by the name that it is called
+# by, coast_fuzz_<entry>, what it is to read; the corpus is tests/fuzz/corpus/<entry>/. Nothing without COAST_FUZZ.
+function(coast_fuzzers)
   if(NOT COAST_FUZZ)
     return()
   endif()
-  cmake_parse_arguments(FUZZ "" "" "SOURCES;DEPS" ${ARGN})
-  add_executable(coast_fuzz_${name} ${FUZZ_SOURCES})
-  target_link_libraries(coast_fuzz_${name} PRIVATE coast_options ${FUZZ_DEPS})
-  target_link_options(coast_fuzz_${name} PRIVATE -fsanitize=fuzzer)
+  cmake_parse_arguments(FUZZ "" "" "NAMES;SOURCES;DEPS" ${ARGN})
+  add_executable(coast_fuzzer ${FUZZ_SOURCES})
+  target_link_libraries(coast_fuzzer PRIVATE coast_options ${FUZZ_DEPS})
+  target_link_options(coast_fuzzer PRIVATE -fsanitize=fuzzer)
+  foreach(name IN LISTS FUZZ_NAMES)
+    add_custom_target(coast_fuzz_${name} ALL
+      COMMAND ${CMAKE_COMMAND} -E create_symlink coast_fuzzer $<TARGET_FILE_DIR:coast_fuzzer>/coast_fuzz_${name}
+      DEPENDS coast_fuzzer)
+  endforeach()
 endfunction()
