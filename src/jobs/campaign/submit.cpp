@@ -63,10 +63,12 @@ std::string write_slurm(const Commands& use, const fs::path& out, const Campaign
                              "exec {}\n",
                              estimate.shards, ask.minutes, ask.megabytes, log,
                              use.run(fmt::format("\"$SLURM_ARRAY_TASK_ID\"/{}", estimate.shards))));
+  // A task that is killed and requeued counts as ended for `afterany`: this job does what such a task has left.
   io::write_text(out / "collect.slurm",
-                 fmt::format("#!/bin/bash\n#SBATCH --job-name=coast-collect\n#SBATCH --ntasks=1\n#SBATCH --time=60\n"
-                             "#SBATCH --mem=1024M\n#SBATCH --output={}\nexec {}\n",
-                             log, use.collect()));
+                 fmt::format("#!/bin/bash\n#SBATCH --job-name=coast-collect\n#SBATCH --ntasks=1\n#SBATCH --time={}\n"
+                             "#SBATCH --mem={}M\n#SBATCH --requeue\n#SBATCH --output={}\n"
+                             "# What a task has left that was requeued, which counts as ended.\n{}\nexec {}\n",
+                             ask.minutes + 60, std::max(1024L, ask.megabytes), log, use.run("1/1"), use.collect()));
   io::write_text(out / "submit.sh",
                  fmt::format("#!/bin/bash\nset -euo pipefail\nshards=$(sbatch --parsable {})\n"
                              "sbatch --parsable --dependency=afterany:\"$shards\" {}\n",
