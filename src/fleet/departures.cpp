@@ -22,14 +22,14 @@ void compare(const Series& series, std::size_t index, const PanelChanges& model,
   const Eigen::MatrixXd W = L.triangularView<Eigen::Lower>().solve(Eigen::MatrixXd::Identity(o.y.size(), o.y.size()));
   const Eigen::MatrixXd M = W - unit.basis * (unit.basis.transpose() * W);
   const Eigen::MatrixXd P = W.transpose() * M;
-  const Eigen::VectorXd Py = P * o.y;
+  const Eigen::VectorXd residual = P * o.y;
   for (Eigen::Index i = 0; i < o.y.size(); ++i) {
     if (P(i, i) * (o.sigma[i] * o.sigma[i] + model.scatter.tau * model.scatter.tau) < 1e-6) continue;  // no other tells
     Departure d;
     d.series = index;
     d.index = design.rows[static_cast<std::size_t>(i)];
-    d.expected = o.y[i] - Py[i] / P(i, i);
-    d.standardised = Py[i] / std::sqrt(P(i, i));
+    d.expected = o.y[i] - residual[i] / P(i, i);
+    d.standardised = residual[i] / std::sqrt(P(i, i));
     out.push_back(d);
   }
 }

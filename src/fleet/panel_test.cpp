@@ -99,7 +99,9 @@ void PanelTest::collect_levels(const Panel& panel) {
   for (const Series& series : panel.series)
     for (const Estimate& e : series.estimates)
       for (std::size_t f = 0; f < e.groups.size(); ++f) ++counts[{f, e.groups[f]}];
-  for (const auto& [key, count] : counts) {
+  for (const auto& entry : counts) {
+    const auto& key = entry.first;  // Clang 14 captures no structured bindings
+    const std::size_t count = entry.second;
     const bool usual = std::ranges::all_of(counts, [&](const auto& other) {
       return other.first.first != key.first || other.second < count ||
              (other.second == count && other.first.second >= key.second);

@@ -3,6 +3,7 @@
 #include <benchmark/benchmark.h>
 #include <zlib.h>
 
+#include <algorithm>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
@@ -14,6 +15,7 @@
 #include "coast/io/gnss.hpp"
 #include "coast/io/imu.hpp"
 #include "coast/io/reference.hpp"
+#include "coast/io/registry.hpp"
 #include "coast/io/rinex.hpp"
 #include "coast/io/writers.hpp"
 
@@ -66,7 +68,7 @@ class Files {
     }
     io::write_imu_csv(folder_ / "imu.csv", imu);
     io::write_gnss_pos(folder_ / "gnss.pos", gnss);
-    const auto nav = io::make_nav_writer(folder_ / "a.nav");
+    const auto nav = io::trajectory_format("nav").make(folder_ / "a.nav", {});
     for (const auto& epoch : epochs_) nav->write(epoch);
     nav->close();
     io::write_observations(folder_ / "a.obs", observations(generator));
@@ -149,15 +151,32 @@ void read_rinex(benchmark::State& state) {
 }
 
 void write_trajectory(benchmark::State& state, const char* format) {
-  const auto stem = Files::get().path("written");
+  const auto path = Files::get().path("written");
   for (auto _ : state) {
-    const auto writer = io::make_trajectory_writer(format, stem);
+    const auto writer = io::trajectory_format(format).make(path, {});
     for (const auto& epoch : Files::get().epochs()) writer->write(epoch);
     writer->close();
   }
-  auto path = stem;
-  path += std::string(".") + format;
   count_bytes(state, path, kSamples);
+}
+
+/// Finds and checks every message of 64 MB of a receiver's own file: a sample of the fuzzers' again and again.
+void frame(benchmark::State& state, const char* name, const char* sample) {
+  constexpr std::size_t kBytes = 64'000'000;
+  const auto path = Files::get().path(name);
+  std::ifstream file(std::string(COAST_SOURCE_DIR "/tests/fuzz/corpus/") + sample, std::ios::binary);
+  const std::string bytes{std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
+  if (bytes.empty()) return state.SkipWithError("no sample");
+  std::ofstream repeated(path, std::ios::binary);
+  for (std::size_t written = 0; written < kBytes; written += bytes.size()) repeated << bytes;
+  repeated.close();
+  const auto format = std::ranges::find(io::formats(), std::string_view(name), &io::Format::name);
+  std::int64_t messages = 0;
+  for (auto _ : state) {
+    messages = 0;
+    for (const io::MessageCount& count : format->count_messages(path)) messages += count.number;
+  }
+  count_bytes(state, path, messages);
 }
 
 BENCHMARK(plain_pass)->Unit(benchmark::kMillisecond);
@@ -166,6 +185,11 @@ BENCHMARK_CAPTURE(read_imu_csv, gzip, "imu.csv.gz")->Unit(benchmark::kMillisecon
 BENCHMARK(read_pos)->Unit(benchmark::kMillisecond);
 BENCHMARK(read_nav)->Unit(benchmark::kMillisecond);
 BENCHMARK(read_rinex)->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(frame, ubx, "ubx", "ubx/observations.ubx")->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(frame, sbf, "sbf", "sbf/observations.sbf")->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(frame, novatel, "novatel", "novatel/gnss.gps")->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(frame, rtcm3, "rtcm3", "rtcm/msm.rtcm3")->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(frame, vectornav, "vectornav", "vectornav/imu.vnb")->Unit(benchmark::kMillisecond);
 BENCHMARK_CAPTURE(write_trajectory, nav, "nav")->Unit(benchmark::kMillisecond);
 BENCHMARK_CAPTURE(write_trajectory, csv, "csv")->Unit(benchmark::kMillisecond);
 BENCHMARK_CAPTURE(write_trajectory, sbet, "sbet")->Unit(benchmark::kMillisecond);

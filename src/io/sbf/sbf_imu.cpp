@@ -73,9 +73,9 @@ SbfImuSample SbfImuReader::sample_of(std::string_view payload) {
     const int type = f.u1();
     f.skip(1);
     if (type == kInfo) {
-      constexpr int kNotKnown = INT16_MIN;
+      constexpr int kNoTemperature = INT16_MIN;
       const int hundredths = f.next<std::int16_t>();
-      if (hundredths != kNotKnown && sensor == sensor_) sample.temperature = static_cast<float>(0.01 * hundredths);
+      if (hundredths != kNoTemperature && sensor == sensor_) sample.temperature = static_cast<float>(0.01 * hundredths);
     }
     if (type != kAcceleration && type != kAngularRate) continue;
     if (!sensor_) sensor_ = sensor;

@@ -87,10 +87,10 @@ std::optional<SbfSolution> sbf_solution(const MessageFrame& frame) {
   const double bias_ms = f.f8();
   if (bias_ms > -kMostBias && bias_ms < kMostBias) s.clock_bias_s = 1e-3 * bias_ms;
   f.skip(4 + 1);  // drift, time system
-  constexpr int kNotKnown = 255;
+  constexpr int kNoNumber = 255;
   s.datum = f.u1();
   const int satellites = f.u1();
-  s.satellites = satellites == kNotKnown ? 0 : satellites;
+  s.satellites = satellites == kNoNumber ? 0 : satellites;
   if (frame.payload.size() < kWithAccuracies) return s;
   f.skip(1 + 2 + 2 + 4 + 1 + 1 + 2 + 2);  // corrections, reference, age, signals, alert, bases, PPP, latency
   const int horizontal = f.u2(), vertical = f.u2();

@@ -66,7 +66,7 @@ UnitResult processed(Campaign& campaign, const CampaignUnit& unit, const fs::pat
   }
   UnitResult row = unit_result(result);
   row.imu = device_of(config);
-  row.temperature_degC = temperature;
+  row.temperature = temperature;
   return row;
 }
 
@@ -121,7 +121,7 @@ UnitResult diagnosed(Campaign& campaign, const CampaignUnit& unit, const fs::pat
   io::write_text(folder / kSummary, diagnosis_json(result));
   UnitResult row = unit_result(result);
   row.imu = device_of(config.run);
-  row.temperature_degC = temperature;
+  row.temperature = temperature;
   return row;
 }
 

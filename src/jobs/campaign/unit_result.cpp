@@ -100,7 +100,7 @@ void add_states(std::vector<CampaignEstimated>& list, const std::vector<StateTra
     const bool second = std::ranges::find(seen, track.name) != seen.end();
     seen.push_back(track.name);
     if (!scale) {
-      const std::size_t own = axis[0] - std::size_t{'x'};
+      const auto own = static_cast<std::size_t>(axis[0] - 'x');
       axis += kXyz[(own + (second ? 2U : 1U)) % 3];
     }
     list.push_back({track.name.substr(0, space - 2) + "_" + process, axis, values.back(), sigmas.back(), scale ? "1" : "rad"});
@@ -260,7 +260,7 @@ std::string result_json(const UnitResult& result, const UnitCost& cost) {
   j["schema"] = "coast.campaign_unit/1";
   if (!result.error.empty()) j["error"] = result.error;
   j["imu"] = result.imu;
-  if (!result.temperature_degC.empty()) j["temperature_degC"] = result.temperature_degC;
+  if (!result.temperature.empty()) j["temperature_degC"] = result.temperature;
   j["row"] = result.row;
   j["outages"] = result.outages;
   j["estimates"] = Json::array();
@@ -276,7 +276,7 @@ std::optional<UnitResult> result_from(const std::string& json) {
     UnitResult result;
     result.error = j.value("error", "");
     result.imu = j.value("imu", "");
-    result.temperature_degC = j.value("temperature_degC", "");
+    result.temperature = j.value("temperature_degC", "");
     result.row = j.at("row");
     result.outages = j.at("outages").get<std::vector<std::string>>();
     for (const Json& e : j.at("estimates")) result.estimates.push_back({e.at(0), e.at(1), e.at(2), e.at(3), e.at(4)});

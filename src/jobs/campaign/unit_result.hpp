@@ -30,9 +30,9 @@ struct UnitResult {
   nlohmann::ordered_json row = nlohmann::ordered_json::object();  ///< of missions.csv, by column
   std::vector<std::string> outages = {};                          ///< start_s, duration_s, then outage_columns()
   std::vector<CampaignEstimated> estimates = {};
-  std::string imu = {};               ///< which device
-  std::string temperature_degC = {};  ///< mean; empty: not known
-  std::string error = {};             ///< empty unless it has failed
+  std::string imu = {};          ///< which device
+  std::string temperature = {};  ///< mean, degC; empty: not known
+  std::string error = {};        ///< empty unless it has failed
 };
 
 /// What a unit has used. It is told, and never merged.
