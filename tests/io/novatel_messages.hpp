@@ -1,6 +1,7 @@
 #pragma once
 // Logs as a NovAtel receiver writes them, binary and ASCII, from one list of fields. Shares no code with the readers.
 
+#include <cmath>
 #include <cstdio>
 #include <string>
 
@@ -70,7 +71,7 @@ struct NovAtelHead {
 inline std::string novatel_binary(unsigned id, const NovAtelBody& body, const NovAtelHead& head = {}) {
   Bytes b;
   b.text("\xaa\x44\x12").u1(28).u2(id).u1(head.type).u1(32).u2(static_cast<unsigned>(body.binary.size())).u2(0).u1(100);
-  b.u1(head.status).u2(head.week).u4(static_cast<std::uint32_t>(head.seconds * 1000.0 + 0.5)).u4(0).u2(0).u2(16000);
+  b.u1(head.status).u2(head.week).u4(static_cast<std::uint32_t>(std::lround(head.seconds * 1000.0))).u4(0).u2(0).u2(16000);
   b.text(body.binary);
   return b.str() + Bytes().u4(novatel_crc(b.str())).str();
 }
@@ -78,7 +79,7 @@ inline std::string novatel_binary(unsigned id, const NovAtelBody& body, const No
 inline std::string novatel_short(unsigned id, const NovAtelBody& body, const NovAtelHead& head = {}) {
   Bytes b;
   b.text("\xaa\x44\x13").u1(static_cast<unsigned>(body.binary.size())).u2(id).u2(head.week);
-  b.u4(static_cast<std::uint32_t>(head.seconds * 1000.0 + 0.5)).text(body.binary);
+  b.u4(static_cast<std::uint32_t>(std::lround(head.seconds * 1000.0))).text(body.binary);
   return b.str() + Bytes().u4(novatel_crc(b.str())).str();
 }
 

@@ -39,7 +39,7 @@ std::string in_week(const std::string& messages) {
   return test::rtcm_1019(3, kShortWeek) + messages;
 }
 
-record::ObservationRecording observations_of(const std::string& content, std::optional<geo::GpsTime> near = std::nullopt) {
+record::ObservationRecording rtcm_observations_of(const std::string& content, std::optional<geo::GpsTime> near = std::nullopt) {
   const Files files;
   return read_observations(files.put("base.rtcm3", content), near);
 }
@@ -59,7 +59,7 @@ TEST(RtcmMsm, OfEachKindHasItsScales) {
     Msm message;
     message.number = 1070 + kind;
     message.cells[0].cn0 = fine ? 700 : 44;
-    const auto recording = observations_of(in_week(msm(message)));
+    const auto recording = rtcm_observations_of(in_week(msm(message)));
     ASSERT_EQ(recording.epochs.size(), 1U);
     ASSERT_EQ(recording.epochs[0].observations.size(), 1U);
     EXPECT_EQ(recording.epochs[0].t, gps_at(kStationSecond));
@@ -87,7 +87,7 @@ TEST(RtcmMsm, LeavesOutWhatIsNotMeasured) {
   message.cells[2].cn0 = 0;
   message.cells[2].half = 1;
   message.cells[0].half = 1;
-  const auto recording = observations_of(in_week(msm(message)));
+  const auto recording = rtcm_observations_of(in_week(msm(message)));
   ASSERT_EQ(recording.epochs[0].observations.size(), 3U);  // nothing of the one without a range
   const auto& all = recording.epochs[0].observations;
   EXPECT_FALSE(all[0].code_m);
@@ -188,7 +188,7 @@ TEST(RtcmMsm, HasTheSignalsOfEachSystem) {
     message.cells.clear();
     for (int place = 1; place <= 32; ++place) message.cells.push_back({1, place});
     if (table.letter == 'R') message.epoch = glonass_epoch(0, 36'000'000 + 10'800'000 - 18'000);
-    const auto recording = observations_of(in_week(msm(message)));
+    const auto recording = rtcm_observations_of(in_week(msm(message)));
     std::set<std::string> expected, found;
     for (const auto& [place, name] : table.signals) expected.insert(name);
     for (const Observation& o : recording.epochs.at(0).observations) {
@@ -202,7 +202,7 @@ TEST(RtcmMsm, HasTheSignalsOfEachSystem) {
     // The order of places is that of the table: the code tells which cell a signal came from.
     for (const auto& [place, name] : table.signals) {
       message.cells = {{1, place}};
-      const auto one = observations_of(in_week(msm(message)));
+      const auto one = rtcm_observations_of(in_week(msm(message)));
       const record::Signal signal = one.epochs.at(0).observations.at(0).signal;
       EXPECT_EQ((std::string{signal.band, signal.tracking}), name) << table.letter << place;
     }
@@ -218,7 +218,7 @@ TEST(RtcmMsm, OfAllSystemsOfATimeAreOneEpoch) {
   glonass.cells[0].signal = 8;  // 2C
   beidou.number = 1127;
   beidou.epoch = 36'000'000 - 14'000;
-  const auto recording = observations_of(in_week(msm(gps) + msm(glonass) + msm(beidou)));
+  const auto recording = rtcm_observations_of(in_week(msm(gps) + msm(glonass) + msm(beidou)));
   ASSERT_EQ(recording.epochs.size(), 1U);
   EXPECT_EQ(recording.epochs[0].t, gps_at(kStationSecond));
   const auto& all = recording.epochs[0].observations;
@@ -238,7 +238,7 @@ TEST(RtcmMsm, OfGlonassHasTheDayOfMoscow) {
   for (const int day : {0, 7}) {  // 7: not known
     glonass.epoch = glonass_epoch(day, 1'800'000);
     const std::string gps = msm(Msm{.epoch = 595'800'000, .cells = {{}}});
-    const auto recording = observations_of(test::rtcm_1019(3, kShortWeek, 597'600 / 16) + gps + msm(glonass));
+    const auto recording = rtcm_observations_of(test::rtcm_1019(3, kShortWeek, 597'600 / 16) + gps + msm(glonass));
     ASSERT_EQ(recording.epochs.size(), 2U) << day;
     EXPECT_EQ(recording.epochs[1].t, gps_at(604'800.0 - 9000.0 + 18.0)) << day;
   }
@@ -249,12 +249,12 @@ TEST(RtcmMsm, WithoutFrequencyNumberHasNoPhase) {
   glonass.number = 1084;
   glonass.epoch = glonass_epoch(0, 36'000'000 + 3 * 3'600'000 - 18'000);
   glonass.cells[0].cn0 = 40;
-  const auto without = observations_of(in_week(msm(glonass)));
+  const auto without = rtcm_observations_of(in_week(msm(glonass)));
   EXPECT_TRUE(without.epochs.at(0).observations.at(0).code_m);
   EXPECT_FALSE(without.epochs[0].observations[0].phase_cycles);
   EXPECT_EQ(test::count_of(without.events, "rtcm_no_channel"), 1);
   // 1020 states it, wherever it comes.
-  const auto with = observations_of(in_week(msm(glonass) + test::rtcm_1020(5, -3, 51)));
+  const auto with = rtcm_observations_of(in_week(msm(glonass) + test::rtcm_1020(5, -3, 51)));
   EXPECT_NEAR(with.epochs.at(0).observations.at(0).phase_cycles.value(),
               metres(70.5 - 2000 * 0x1p-29) * (1602e6 - 3 * 0.5625e6) / kLight, 1e-7);
 }
@@ -279,7 +279,7 @@ TEST(RtcmMsm, LosesLockWhereTheTimeOfLockIsShort) {
   Msm late;  // 8.192 s of lock after a pause of 9 s
   late.epoch = ms + 8000;
   late.cells[0].lock = 288;
-  const auto recording = observations_of(in_week(messages + msm(late)));
+  const auto recording = rtcm_observations_of(in_week(messages + msm(late)));
   ASSERT_EQ(recording.epochs.size(), steps.size() + 1);
   for (std::size_t i = 0; i < steps.size(); ++i) EXPECT_EQ(recording.epochs[i].observations[0].lost_lock, steps[i].lost) << i;
   EXPECT_TRUE(recording.epochs.back().observations[0].lost_lock);
@@ -299,7 +299,7 @@ TEST(RtcmMsm, OfFourBitsLosesLockLikewise) {
     messages += msm(message);
     ms += 1000;
   }
-  const auto recording = observations_of(in_week(messages));
+  const auto recording = rtcm_observations_of(in_week(messages));
   ASSERT_EQ(recording.epochs.size(), steps.size());
   for (std::size_t i = 0; i < steps.size(); ++i) EXPECT_EQ(recording.epochs[i].observations[0].lost_lock, steps[i].second) << i;
 }
@@ -309,24 +309,25 @@ TEST(RtcmWeeks, AreThoseOfAnyMessageThatStatesOne) {
   for (const std::string& week :
        {test::rtcm_1019(3, kShortWeek), test::rtcm_1042(20, 888), test::rtcm_1044(2, kShortWeek),
         test::rtcm_galileo(1045, 7, 1220), test::rtcm_galileo(1046, 7, 1220), test::rtcm_1013(59'952, 35'982, 18)}) {
-    EXPECT_EQ(observations_of(week + epoch).epochs.at(0).t, gps_at(kStationSecond));
-    EXPECT_EQ(observations_of(epoch + week).epochs.at(0).t, gps_at(kStationSecond));
+    EXPECT_EQ(rtcm_observations_of(week + epoch).epochs.at(0).t, gps_at(kStationSecond));
+    EXPECT_EQ(rtcm_observations_of(epoch + week).epochs.at(0).t, gps_at(kStationSecond));
   }
 }
 
 TEST(RtcmWeeks, OfTenBitsAreTheLatestBefore2031OrNearWhatIsKnown) {
   const std::string content = test::rtcm_1019(3, 686) + msm(Msm{});  // 1710 is in 2012, 2734 in 2032
-  EXPECT_EQ(observations_of(content).epochs.at(0).t.week(), 1710);
-  EXPECT_EQ(observations_of(content, gps_at(100.0, 2735)).epochs.at(0).t.week(), 2734);
+  EXPECT_EQ(rtcm_observations_of(content).epochs.at(0).t.week(), 1710);
+  EXPECT_EQ(rtcm_observations_of(content, gps_at(100.0, 2735)).epochs.at(0).t.week(), 2734);
   // Before 2012 the leap seconds between GPS and GLONASS tell: 15 are of 2009, not of 2029.
   const std::int64_t moscow = 36'000'000 + 3 * 3'600'000 - 15'000;
   const std::string both = test::rtcm_1019(3, 538) + test::legacy(1004, 36'000'000, {{}}) + test::legacy(1012, moscow, {{}});
-  const auto recording = observations_of(both);
+  const auto recording = rtcm_observations_of(both);
   ASSERT_EQ(recording.epochs.size(), 1U);
   EXPECT_EQ(recording.epochs[0].t, gps_at(kStationSecond, 1562));
   // One that is not modulo 1024 has the last word.
-  EXPECT_EQ(observations_of(test::rtcm_1019(3, 686) + test::rtcm_galileo(1046, 7, 1710) + msm(Msm{})).epochs.at(0).t.week(),
-            2734);
+  EXPECT_EQ(
+      rtcm_observations_of(test::rtcm_1019(3, 686) + test::rtcm_galileo(1046, 7, 1710) + msm(Msm{})).epochs.at(0).t.week(),
+      2734);
 }
 
 TEST(RtcmWeeks, AreFollowedThroughTheirTurn) {
@@ -335,7 +336,7 @@ TEST(RtcmWeeks, AreFollowedThroughTheirTurn) {
   const std::string early = test::rtcm_1019(4, kShortWeek, 0);  // sent in one week, of the next: says less
   for (const std::string& content : {last + before + after, before + last + after, before + after + next,
                                      early + before + last + after, before + early + after + next}) {
-    const auto recording = observations_of(content);
+    const auto recording = rtcm_observations_of(content);
     ASSERT_EQ(recording.epochs.size(), 2U);
     EXPECT_EQ(recording.epochs[0].t, gps_at(604'799.0));
     EXPECT_EQ(recording.epochs[1].t, gps_at(604'800.0));
@@ -348,7 +349,7 @@ TEST(RtcmWeeks, ThatNothingStatesAreAsked) {
   const std::string refusal = test::refusal([&] { (void)read_observations(files.path("base.rtcm3")); });
   EXPECT_NE(refusal.find("nothing that states the GPS week"), std::string::npos) << refusal;
   EXPECT_NE(refusal.find("--gps-week"), std::string::npos) << refusal;
-  const auto recording = observations_of(msm(Msm{}), gps_at(500'000.0, kStationWeek - 1));
+  const auto recording = rtcm_observations_of(msm(Msm{}), gps_at(500'000.0, kStationWeek - 1));
   EXPECT_EQ(recording.epochs.at(0).t, gps_at(kStationSecond));
   EXPECT_EQ(test::count_of(recording.events, "rtcm_week_not_stated"), 1);
   // `coast inspect --gps-week` gives the middle of the week.
@@ -357,7 +358,7 @@ TEST(RtcmWeeks, ThatNothingStatesAreAsked) {
 
 TEST(RtcmLegacy, HasCodeAndPhaseOfBothBands) {
   const double code = 0.02 * 1'234'567 + metres(73.0);
-  const auto gps = observations_of(in_week(test::legacy(1004, 36'000'000, {{}, {.number = 40}})));
+  const auto gps = rtcm_observations_of(in_week(test::legacy(1004, 36'000'000, {{}, {.number = 40}})));
   ASSERT_EQ(gps.epochs.size(), 1U);
   const auto& all = gps.epochs[0].observations;
   ASSERT_EQ(all.size(), 3U);  // SBAS has no second band
@@ -373,7 +374,7 @@ TEST(RtcmLegacy, HasCodeAndPhaseOfBothBands) {
   const LegacySatellite slot{
       .number = 9, .channel = -2, .range = 20'000'000, .whole = 36, .second_code = 1, .difference = -8192};
   const auto glonass =
-      observations_of(in_week(msm(Msm{.epoch = 35'000'000, .cells = {{}}}) + test::legacy(1012, moscow, {slot})));
+      rtcm_observations_of(in_week(msm(Msm{.epoch = 35'000'000, .cells = {{}}}) + test::legacy(1012, moscow, {slot})));
   ASSERT_EQ(glonass.epochs.size(), 2U);
   EXPECT_EQ(glonass.epochs[1].t, gps_at(kStationSecond));
   const auto& pair = glonass.epochs[1].observations;
@@ -394,7 +395,7 @@ TEST(RtcmLegacy, FollowsThePhaseThroughItsTurns) {
     s.phase = static_cast<int>(std::lround(difference / 0.0005));
     messages += test::legacy(1004, 36'000'000 + 1000 * i, {s});
   }
-  const auto recording = observations_of(in_week(messages));
+  const auto recording = rtcm_observations_of(in_week(messages));
   ASSERT_EQ(recording.epochs.size(), 3U);
   const double code = 0.02 * 1'234'567 + metres(73.0);
   EXPECT_NEAR(recording.epochs[2].observations[0].phase_cycles.value(), (code + 280.0) * 1575.42e6 / kLight, 0.002);
@@ -402,7 +403,7 @@ TEST(RtcmLegacy, FollowsThePhaseThroughItsTurns) {
 }
 
 TEST(RtcmLegacy, IsNotUsedBesideMsm) {
-  const auto recording = observations_of(in_week(test::legacy(1004, 36'000'000, {{}}) + msm(Msm{})));
+  const auto recording = rtcm_observations_of(in_week(test::legacy(1004, 36'000'000, {{}}) + msm(Msm{})));
   ASSERT_EQ(recording.epochs.size(), 1U);
   EXPECT_EQ(recording.epochs[0].observations.size(), 1U);
   EXPECT_EQ(test::count_of(recording.events, "rtcm_legacy_left_out"), 1);
@@ -411,7 +412,7 @@ TEST(RtcmLegacy, IsNotUsedBesideMsm) {
 TEST(RtcmStations, HaveTheirPlaceAntennaAndReceiver) {
   const std::string station = test::rtcm_1006(41'571'770'661, -6'712'304'772, 47'747'670'313, 15'000) +
                               test::rtcm_1033({"TRM59800.00     NONE", "1234", "SEPT POLARX5", "5.4.0", "3001"});
-  const auto recording = observations_of(in_week(station + msm(Msm{})));
+  const auto recording = rtcm_observations_of(in_week(station + msm(Msm{})));
   EXPECT_EQ(recording.antenna, "TRM59800.00     NONE");
   EXPECT_EQ(recording.receiver, "SEPT POLARX5");
   // The reference point is above the marker, along the plumb line of the ellipsoid.
@@ -421,8 +422,8 @@ TEST(RtcmStations, HaveTheirPlaceAntennaAndReceiver) {
   EXPECT_NEAR((point - *recording.approximate_r_e).norm(), 1.5, 1e-6);
   EXPECT_NEAR(latitude / geo::kDegree, 48.78, 0.01);
   // Those of another station are not its.
-  const auto other = observations_of(in_week(test::rtcm_1006(41'571'770'661, 6'712'304'772, 47'747'670'313, 0, 13) +
-                                             msm(Msm{}) + msm(Msm{.epoch = 36'001'000, .station = 13, .cells = {{}}})));
+  const auto other = rtcm_observations_of(in_week(test::rtcm_1006(41'571'770'661, 6'712'304'772, 47'747'670'313, 0, 13) +
+                                                  msm(Msm{}) + msm(Msm{.epoch = 36'001'000, .station = 13, .cells = {{}}})));
   EXPECT_FALSE(other.approximate_r_e);
   EXPECT_EQ(other.epochs.size(), 1U);
   EXPECT_EQ(test::count_of(other.events, "rtcm_other_station"), 1);
@@ -530,7 +531,7 @@ TEST(RtcmFiles, AreFoundAmongOtherMessagesAndDamage) {
   const std::string content = "ICY 200 OK\r\n\r\n" + in_week(epoch) + test::nmea("GNGGA,,,,,,0,00,99.99,,,,,,") +
                               test::ubx(0x01, 0x20, std::string(16, '\0')) + spoiled + next + test::rtcm3(1071, 40) +
                               test::rtcm3(1230, 8) + next.substr(0, 30);
-  const auto recording = observations_of(content);
+  const auto recording = rtcm_observations_of(content);
   EXPECT_EQ(recording.epochs.size(), 2U);
   EXPECT_EQ(test::count_of(recording.events, "message_checksum"), 1);
   EXPECT_EQ(test::count_of(recording.events, "message_cut_off"), 1);
@@ -546,7 +547,7 @@ TEST(RtcmFiles, WithMasksThatPromiseMoreAreLeftOut) {
   b.put(1077, 12).put(12, 12).put(36'000'000, 30).put(0, 19).put(-1, 64).put(-1, 32).put(0, 100);
   BitString few;
   few.put(1077, 12).put(12, 12).put(36'000'000, 30).put(0, 19).put(255, 64).put(255, 32).put(-1, 64);
-  const auto recording = observations_of(in_week(msm(Msm{}) + test::rtcm_frame(b) + test::rtcm_frame(few)));
+  const auto recording = rtcm_observations_of(in_week(msm(Msm{}) + test::rtcm_frame(b) + test::rtcm_frame(few)));
   EXPECT_EQ(recording.epochs.size(), 1U);
   EXPECT_EQ(test::count_of(recording.events, "rtcm_spoiled"), 2);
 }

@@ -88,8 +88,7 @@ class Tables {
       if (!factor.empty()) name += "|" + factor;
     for (const CampaignEstimated& e : of.result->estimates)
       estimates_.write(fmt::format("{},{},{},{},{},{},{},{},{}\n", field(name), field(of.result->imu), field(row, "start"),
-                                   field(e.quantity), field(e.axis), e.value, e.sigma, field(e.unit),
-                                   of.result->temperature_degC));
+                                   field(e.quantity), field(e.axis), e.value, e.sigma, field(e.unit), of.result->temperature));
   }
   void commit() {
     missions_.commit();
