@@ -110,8 +110,7 @@ std::optional<RosFix> ros_fix(const BagMessage& message) {
   RosFields fields(message);
   RosFix fix;
   fix.stamp_ns = fields.header();
-  const auto status = fields.number<std::int8_t>();
-  fix.status = static_cast<int>(status);
+  fix.status = fields.number<std::int8_t>();
   (void)fields.number<std::uint16_t>();  // the systems in use
   fix.latitude_deg = fields.number<double>();
   fix.longitude_deg = fields.number<double>();

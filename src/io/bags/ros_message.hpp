@@ -19,7 +19,7 @@ struct RosImu {
 struct RosFix {
   enum class Covariance : std::uint8_t { kUnknown = 0, kApproximated = 1, kDiagonal = 2, kKnown = 3 };
   std::int64_t stamp_ns = 0;
-  int status = 0;  ///< -2 unknown, -1 no fix, 0 fix, 1 SBAS, 2 ground-based augmentation
+  std::int8_t status = 0;  ///< -2 unknown, -1 no fix, 0 fix, 1 SBAS, 2 ground-based augmentation
   double latitude_deg = 0, longitude_deg = 0, height = 0;  ///< above the ellipsoid
   Eigen::Matrix3d covariance_enu;                          ///< m^2
   Covariance covariance = Covariance::kUnknown;
