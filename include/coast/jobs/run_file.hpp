@@ -70,8 +70,8 @@ struct RunConfig {
   config::Node root;
   std::filesystem::path file;
   io::ImuFileOptions imu;
-  std::string imu_name;    ///< which device it was, for statistics of several; empty: not stated
-  std::string imu_serial;  ///< likewise
+  std::string imu_name;                               ///< which device it was, for statistics of several; empty: not stated
+  std::string imu_serial;                             ///< likewise
   std::optional<record::ImuCalibration> calibration;  ///< taken out of the recording as it is read
   std::optional<std::filesystem::path> noise_levels;  ///< of the IMU over time
   std::optional<std::filesystem::path> members;       ///< measurements of each member of a synthetic IMU
