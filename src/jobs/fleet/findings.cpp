@@ -27,15 +27,14 @@ bool overlap(const Change& a, const Change& b) {
   return a.t_95.first <= b.t_95.second && b.t_95.first <= a.t_95.second;
 }
 
-/// Whether two changes are one event: same kind, same time, and a unit in common, or both of many units.
+/// Whether two changes are one event: same kind, same time, and the same units, or both of many units, or one of some of them.
 bool belong_together(const Change& a, const Change& b, const std::set<std::string>& units_a,
                      const std::set<std::string>& units_b) {
   if (a.kind != b.kind || a.factor != b.factor || a.level != b.level) return false;
   if (a.kind == ChangeKind::kStep && !overlap(a, b)) return false;
-  if (std::max(units_a.size(), units_b.size()) >= kMany) {
-    if (a.kind != ChangeKind::kDrift) return true;
-    return std::min(units_a.size(), units_b.size()) >= kMany;
-  }
+  const auto& [fewer, more] = std::minmax(units_a, units_b, [](const auto& x, const auto& y) { return x.size() < y.size(); });
+  if (fewer.size() >= kMany) return true;
+  if (more.size() >= kMany) return a.kind != ChangeKind::kDrift && std::ranges::includes(more, fewer);
   return units_a == units_b;
 }
 
@@ -66,7 +65,8 @@ std::string what_it_may_be(const FleetFinding& finding, const FleetEstimates& es
   const std::string& quantity = estimates.fleet.panels[finding.parts.front().panel].quantity;
   if (finding.units.size() >= kMany)
     return first.kind == ChangeKind::kDrift ? "" : " They have something in common: firmware, a setting, the processing?";
-  if (first.kind == ChangeKind::kDrift) return " The unit ages.";
+  const bool of_mounting = quantity.starts_with("lever_arm") || quantity.starts_with("mounting");
+  if (first.kind == ChangeKind::kDrift) return of_mounting ? " Does its mount give way?" : " The unit ages.";
   if (quantity.starts_with("lever_arm")) return " Was the antenna moved?";
   if (quantity.starts_with("mounting")) return " Was the unit mounted anew?";
   return "";
