@@ -42,6 +42,21 @@ std::optional<Eigen::Matrix3d> covariance_if_positive(const Eigen::Matrix3d& cov
   return cov;
 }
 
+std::optional<record::FixQuality> quality_of_fix_type(int fix_type) {
+  switch (fix_type) {
+    case 3:
+      return record::FixQuality::kSingle;
+    case 4:
+      return record::FixQuality::kDgps;
+    case 5:
+      return record::FixQuality::kFloat;
+    case 6:
+      return record::FixQuality::kFixed;
+    default:
+      return std::nullopt;
+  }
+}
+
 bool ReceiverPositions::take(const ReceiverPosition& position) {
   ++rows_;
   if (!position.solved) return not_solved_.add(), false;

@@ -35,6 +35,10 @@ struct ReceiverPosition {
 /// None for a matrix that is no covariance: not positive definite, not finite.
 [[nodiscard]] std::optional<Eigen::Matrix3d> covariance_if_positive(const Eigen::Matrix3d& cov);
 
+/// Numbers of autopilots (GPS_FIX_TYPE of MAVLink): 3 3-D, 4 differential, 5 float, 6 fixed; none for all others, which are no
+/// solution in three dimensions, or extrapolated.
+[[nodiscard]] std::optional<record::FixQuality> quality_of_fix_type(int fix_type);
+
 /// Takes the positions of a file in its order, with the standard deviations and the time offset that the options state.
 class ReceiverPositions {
  public:

@@ -61,24 +61,8 @@ void add_accuracy(const DataflashMessage& message, DataflashPosition& p) {
   if (ellipsoidal && std::abs(*ellipsoidal - p.place.height) < kHighestGeoid) p.geoid = *ellipsoidal - p.place.height;
 }
 
-/// Status: 0 none, 1 no fix, 2 2-D, 3 3-D, 4 differential, 5 float, 6 fixed.
-std::optional<record::FixQuality> dataflash_quality(int status) {
-  switch (status) {
-    case 3:
-      return record::FixQuality::kSingle;
-    case 4:
-      return record::FixQuality::kDgps;
-    case 5:
-      return record::FixQuality::kFloat;
-    case 6:
-      return record::FixQuality::kFixed;
-    default:
-      return std::nullopt;
-  }
-}
-
 ReceiverPosition stated_by_dataflash(const DataflashPosition& p, std::optional<double> geoid) {
-  const auto quality = dataflash_quality(p.status);
+  const auto quality = quality_of_fix_type(p.status);
   ReceiverPosition position;
   position.t = p.t;
   position.solved = quality.has_value();

@@ -67,24 +67,8 @@ std::optional<UlogPosition> position_of(const UlogRow& row) {
   return p;
 }
 
-/// fix_type: 3 3-D, 4 code differential, 5 RTK float, 6 RTK fixed; below 3 none; 8 extrapolated.
-std::optional<record::FixQuality> ulog_quality(int fix_type) {
-  switch (fix_type) {
-    case 3:
-      return record::FixQuality::kSingle;
-    case 4:
-      return record::FixQuality::kDgps;
-    case 5:
-      return record::FixQuality::kFloat;
-    case 6:
-      return record::FixQuality::kFixed;
-    default:
-      return std::nullopt;
-  }
-}
-
 ReceiverPosition stated_by(const UlogPosition& p) {
-  const auto quality = ulog_quality(p.fix_type);
+  const auto quality = quality_of_fix_type(p.fix_type);
   ReceiverPosition position;
   position.t = p.t;
   position.solved = quality.has_value();

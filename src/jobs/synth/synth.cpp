@@ -114,6 +114,18 @@ void merge_all(const ArrayConfig& config, const std::optional<record::ImuRecordi
   });
 }
 
+/// Two IMUs never give the same numbers: it is one recording under two names, of which nothing can be learnt about noise.
+void require_different(const ArrayConfig& config, const array::Signals& signals) {
+  constexpr double kSame = 1e-9;  // relative: above rounding, far below the last digit of any sensor
+  for (std::size_t k = 1; k < signals.sensors.size(); ++k)
+    for (std::size_t i = 0; i < k; ++i) {
+      const auto &a = signals.sensors[i].values, &b = signals.sensors[k].values;
+      if ((a - b).norm() <= kSame * a.norm())
+        throw config.root.error(fmt::format("{} and {} give the same samples", config.imus[i].name, config.imus[k].name),
+                                "a recording of its own for each IMU", "Is one file, or one topic, named twice?");
+    }
+}
+
 SynthResult merged(const ArrayConfig& config, const std::vector<record::ImuRecording>& recordings,
                    const std::optional<record::ImuRecording>& reference, SynthResult result, const Progress& progress) {
   for (const record::ImuRecording& recording : recordings) {
@@ -124,6 +136,7 @@ SynthResult merged(const ArrayConfig& config, const std::vector<record::ImuRecor
   for (std::size_t k = 0; k < recordings.size(); ++k)
     members.push_back({config.imus[k].name, &recordings[k], config.imus[k].frame});
   result.assembly = array::assemble(members, config.assembly, [&](const char* what, double share) { progress(what, share); });
+  require_different(config, result.assembly.signals);
   result.events.insert(result.events.end(), result.assembly.events.begin(), result.assembly.events.end());
   merge_all(config, reference, result, progress);
   tell_warnings(result.events, progress);
