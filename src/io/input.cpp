@@ -21,6 +21,7 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr std::size_t kBlock = std::size_t{1} << 18;
+constexpr std::size_t kLeastBlock = std::size_t{1} << 12;
 constexpr std::size_t kMaxLine = std::size_t{1} << 20;
 // Tables of numbers compress by less than 20, gzip of one repeated byte by 1000.
 constexpr std::uint64_t kMaxExpansion = 200;
@@ -40,22 +41,31 @@ void check_is_readable_file(const fs::path& path) {
   if (fs::is_regular_file(status) && fs::file_size(path, error) == 0) refuse(path.string(), "the file is empty", "", "");
 }
 
+struct Content {
+  std::uint64_t size = 0;  ///< 0 where it is not known
+  bool compressed = false;
+};
+
 /// A gzip member ends with its uncompressed length modulo 2^32, little endian (RFC 1952, 2.3.1).
-std::uint64_t uncompressed_size(const fs::path& path) {
+Content content_of(const fs::path& path) {
   const std::unique_ptr<std::FILE, int (*)(std::FILE*)> file(std::fopen(path.c_str(), "rb"), &std::fclose);
-  if (!file) return 0;
+  if (!file) return {};
+  std::error_code error;
+  const auto stored = fs::file_size(path, error);
+  if (error) return {};
   std::array<unsigned char, 4> b{};
   const bool is_gzip = std::fread(b.data(), 1, 2, file.get()) == 2 && b[0] == 0x1f && b[1] == 0x8b;
-  std::error_code error;
-  if (!is_gzip) {
-    const auto size = fs::file_size(path, error);
-    return error ? 0 : size;
-  }
-  if (std::fseek(file.get(), -4, SEEK_END) != 0 || std::fread(b.data(), 1, 4, file.get()) != 4) return 0;
+  if (!is_gzip) return {stored, false};
+  if (std::fseek(file.get(), -4, SEEK_END) != 0 || std::fread(b.data(), 1, 4, file.get()) != 4) return {0, true};
   const auto stated = std::uint64_t{b[0]} | std::uint64_t{b[1]} << 8 | std::uint64_t{b[2]} << 16 | std::uint64_t{b[3]} << 24;
   // A damaged trailer must not reserve the machine's memory: tables of numbers compress by less than 20.
-  const auto compressed = fs::file_size(path, error);
-  return error ? 0 : std::min<std::uint64_t>(stated, 20 * compressed);
+  return {std::min<std::uint64_t>(stated, 20 * stored), true};
+}
+
+/// One byte more than a plain file has, so that its end is seen in the first reading.
+std::size_t block_for(const Content& content) {
+  if (content.compressed || content.size == 0) return kBlock;
+  return static_cast<std::size_t>(std::clamp<std::uint64_t>(content.size + 1, kLeastBlock, kBlock));
 }
 
 }  // namespace
@@ -74,9 +84,11 @@ ByteSource::ByteSource(const fs::path& stated) : handle_(std::make_unique<Handle
   check_is_readable_file(path);
   handle_->file = gzopen(path.c_str(), "rb");
   if (handle_->file == nullptr) refuse(name_, fmt::format("cannot be opened: {}", std::strerror(errno)), "", "");
-  gzbuffer(handle_->file, static_cast<unsigned>(kBlock));
+  const Content content = content_of(path);
+  expected_size_ = content.size;
+  block_ = block_for(content);
+  gzbuffer(handle_->file, static_cast<unsigned>(block_));
   note_read(path);
-  expected_size_ = uncompressed_size(path);
 }
 
 ByteSource::~ByteSource() = default;
@@ -141,7 +153,7 @@ std::string read_all(const fs::path& path, std::uint64_t most) {
   return text;
 }
 
-LineReader::LineReader(const fs::path& path) : source_(path), buffer_(kBlock) {
+LineReader::LineReader(const fs::path& path) : source_(path), buffer_(source_.block()) {
   (void)refill();
   if (end_ - begin_ >= 3 && std::memcmp(buffer_.data() + begin_, "\xEF\xBB\xBF", 3) == 0) begin_ += 3;
 }
@@ -175,7 +187,7 @@ bool LineReader::refill() {
   if (begin_ > 0) std::memmove(buffer_.data(), buffer_.data() + begin_, pending);
   begin_ = 0;
   end_ = pending;
-  if (buffer_.size() - pending < kBlock / 2) buffer_.resize(buffer_.size() * 2);
+  if (pending > buffer_.size() / 2) buffer_.resize(buffer_.size() * 2);
   const std::size_t n = source_.read(buffer_.data() + pending, buffer_.size() - pending);
   end_ += n;
   if (n > 0 && std::memchr(buffer_.data() + pending, '\0', n) != nullptr) cut_at_nul(pending);
@@ -192,7 +204,7 @@ void LineReader::cut_at_nul(std::size_t first_new) {
   };
   bool tail = nul > 0 && only_filling(base + nul, end_ - nul);
   std::size_t length = end_ - nul;
-  std::vector<char> rest(kBlock);
+  std::vector<char> rest(source_.block());
   while (tail) {
     const std::size_t n = source_.read(rest.data(), rest.size());
     if (n == 0) break;

@@ -317,6 +317,7 @@ void sbf(std::string_view bytes) {
 
 void vectornav(std::string_view bytes) {
   both_of(bytes, "vectornav");
+  rinex_observation(bytes);  // by content
 }
 
 void novatel(std::string_view bytes) {

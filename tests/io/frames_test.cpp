@@ -126,7 +126,7 @@ TEST(Frames, LongerThanAWindowOfFileAreReadAcrossItsEdges) {
   std::mt19937 random(7);
   std::string content;
   std::vector<std::string> payloads;
-  while (content.size() < 4 * ByteWindow::kSize) {
+  while (content.size() < 8 * ByteWindow::kMost) {
     std::string payload(random() % 8185, '\0');
     for (char& c : payload) c = static_cast<char>(random());
     content += ubx(2, 0x15, payload);

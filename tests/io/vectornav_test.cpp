@@ -8,6 +8,7 @@
 
 #include "coast/geo/earth.hpp"
 #include "coast/geo/units.hpp"
+#include "coast/io/rinex.hpp"
 #include "coast/record/error.hpp"
 #include "io/files.hpp"
 #include "io/receiver_messages.hpp"
@@ -272,6 +273,107 @@ TEST(VectorNavMessages, AreReadFromRecordsWithoutFrames) {
   EXPECT_GE(rest.samples.size(), 29U);
   EXPECT_LE(rest.samples.size(), 30U);
   EXPECT_GT(test::count_of(rest.events, "message_garbage"), 0);
+}
+
+/// One signal of RawMeas.
+struct RawSignal {
+  unsigned system, satellite, frequency, channel;
+  double code, wavelength;  ///< m
+  unsigned flags = 0x1E;    ///< tracked, time valid, code and phase locked
+  unsigned slot = 0;
+};
+
+const std::vector<RawSignal> kRawSignals = {{0, 5, 1, 1, 21'677'841.77, 0.190293672798},    // GPS L1 C/A
+                                            {0, 5, 2, 11, 21'677'821.12, 0.244210213425},   // GPS L2C, L
+                                            {2, 13, 7, 9, 21'728'895.11, 0.248349369584},   // E5b Q, by the band of RINEX
+                                            {2, 15, 5, 9, 22'580'472.24, 0.248349369584},   // E5b Q, by the list of the ICD
+                                            {3, 20, 1, 8, 23'000'000.0, 0.192039486310},    // B1I
+                                            {1, 136, 1, 1, 36'567'578.62, 0.190293672798},  // SBAS
+                                            {6, 7, 1, 1, 20'000'000.0, 0.187465483566, 0x1E, 251},  // slot -5 of GLONASS
+                                            {2, 21, 3, 1, 21'986'495.8, 0.190293672798},        // the carrier of E1 called E5a
+                                            {0, 9, 1, 1, 22'000'000.0, 0.190293672798, 0x0E}};  // no lock on the phase
+
+/// @param reserved  bytes behind the number of signals
+std::string raw_meas(double tow, const std::vector<RawSignal>& signals, std::size_t reserved = 1) {
+  Bytes b;
+  b.r8(tow).u2(2165).u1(static_cast<unsigned>(signals.size())).zeros(reserved);
+  for (const RawSignal& s : signals) {
+    b.u1(s.system).u1(s.satellite).u1(s.frequency).u1(s.channel).u1(s.slot).u1(45).u2(s.flags);
+    b.r8(s.code).r8(s.code / s.wavelength).r4(-417.5F);
+  }
+  return b.str();
+}
+
+/// GNSS 1 with one reserved word of satellite information and RawMeas: its bit is in a second word of the mask.
+std::string raw_message(double tow, const std::vector<RawSignal>& signals) {
+  constexpr unsigned kSatInfoBit = 1U << 14, kExtended = 1U << 15, kRawMeasInSecondWord = 1U;
+  const std::string fields = Bytes().u1(1).u1(0).zeros(8).str() + raw_meas(tow, signals);
+  return vectornav(kGnss1Group, {kSatInfoBit | kExtended, kRawMeasInSecondWord}, fields);
+}
+
+record::ObservationRecording raw_observations(const std::string& content) {
+  const Files files;
+  return read_observations(files.put("raw.vnb", content));
+}
+
+TEST(VectorNavObservations, AreReadFromRawMeas) {
+  const auto recording = raw_observations(raw_message(200'000.5, kRawSignals) + raw_message(200'000.5, kRawSignals) +
+                                          raw_message(200'001.5, kRawSignals));
+  ASSERT_EQ(recording.epochs.size(), 2U);
+  EXPECT_EQ(recording.epochs[1].t, geo::GpsTime::from_week(2165, 200'001.5));
+  std::string found;
+  for (const record::Observation& o : recording.epochs[0].observations) {
+    found += to_string(o.satellite) + ":" + o.signal.band + o.signal.tracking + " ";
+    EXPECT_TRUE(o.lost_lock);
+    EXPECT_FALSE(o.half_cycle);
+    EXPECT_EQ(o.cn0_dbhz, 45.0);
+    EXPECT_EQ(o.doppler_hz, -417.5);
+  }
+  EXPECT_EQ(found, "G05:1C G05:2L R07:1C E13:7Q E15:7Q C20:2I S36:1C ");
+  EXPECT_EQ(recording.glonass_channels.at(7), -5);
+  const record::Observation& first = recording.epochs[1].observations.front();
+  EXPECT_EQ(first.code_m, 21'677'841.77);
+  EXPECT_EQ(first.phase_cycles, 21'677'841.77 / 0.190293672798);
+  EXPECT_FALSE(first.lost_lock);
+  EXPECT_EQ(test::count_of(recording.events, "vectornav_unknown_signal"), 2);
+}
+
+TEST(VectorNavObservations, LoseTheirLockBySlipsAndByPauses) {
+  constexpr unsigned kHalfCycle = 1U << 5, kSlip = 1U << 7;
+  const std::vector<RawSignal> both = {kRawSignals[0], kRawSignals[1]}, one = {kRawSignals[0]};
+  std::vector<RawSignal> slipped = both, half = both;
+  slipped[0].flags |= kSlip;
+  half[0].flags |= kHalfCycle;
+  std::string content;
+  double tow = 200'000.0;
+  for (const auto& signals : {both, slipped, one, both, half, both}) content += raw_message(tow++, signals);
+  std::string lost;
+  for (const record::ObservationEpoch& epoch : raw_observations(content).epochs)
+    for (const record::Observation& o : epoch.observations) lost += o.half_cycle ? 'h' : o.lost_lock ? 'x' : '-';
+  EXPECT_EQ(lost,
+            "xx"
+            "x-"
+            "-"
+            "-x"
+            "h-"
+            "x-");
+}
+
+TEST(VectorNavObservations, AreReadFromRecords) {
+  constexpr std::uint32_t kMask = 1U << 14 | 1U << 15 | 1U << 16;
+  Bytes file;
+  for (const std::uint32_t mask : {0U, 0U, kMask, 0U, 0U, 0U}) file.put<std::uint32_t>(mask);
+  for (int i = 0; i < 3; ++i) {
+    file.put<std::uint32_t>(2).put<std::uint32_t>(117).put<double>(200'000.0 + i);
+    file.u1(2).zeros(16).text(raw_meas(200'000.0 + i, kRawSignals, 0));
+  }
+  const auto recording = raw_observations(file.str());
+  ASSERT_EQ(recording.epochs.size(), 3U);
+  EXPECT_EQ(recording.epochs[2].observations.size(), 7U);
+}
+
+TEST(VectorNavObservations, AreMissedWithAReason) {
+  EXPECT_NE(refusal([] { (void)raw_observations(raw_message(200'000.0, {})); }).find("Add RawMeas"), std::string::npos);
 }
 
 class VectorNavRecording : public testing::Test {

@@ -105,6 +105,28 @@ TEST_F(Inspect, RinexIsRecognised) {
   expect_lines(text_of("base.obs", observations), {"RINEX", "marker BASE", "1 epochs", "GPS      1C:   1 satellites"});
 }
 
+TEST_F(Inspect, RunFilesAreReadWithTheirColumnsAxesAndUnits) {
+  std::string imu, positions = "t,lat,lon,h\n";
+  for (int n = 0; n < 3000; ++n)  // forward, left, up in g and deg/s
+    imu += fmt::format("{:.2f} 0.01 0.0 {:.4f} 0.001 0.0 1.0\n", 1000.0 + 0.01 * n, 1e-4 * (n % 7));
+  for (int n = 0; n < 30; ++n) positions += fmt::format("{}.0,47.0,8.0,500.{:03}\n", 1000 + n, n % 3);
+  std::ofstream(folder_.path() / "imu.txt") << imu;
+  std::ofstream(folder_.path() / "positions.csv") << positions;
+  const std::string text = text_of("run.yaml", R"(
+imu:
+  file: imu.txt
+  gps_week: 2374
+  columns: {time: 1, gyro: [2, 3, 4], accel: [5, 6, 7]}
+  units: {gyro: deg/s, accel: g}
+  axes: [x, -y, -z]
+  error_model: )" COAST_SOURCE_DIR R"(/configs/imu/adis16465.yaml
+  lever_arm_m: [0, 0, 0]
+gnss: {file: positions.csv, gps_week: 2374, columns: {time: t, position: [lat, lon, h]}, sd_m: [0.02, 0.02, 0.04]}
+)");
+  expect_lines(text, {"run.yaml: a run file", "as `coast process` reads them", "IMU: 3000 samples", "GNSS: 30 fixes"});
+  EXPECT_THROW(static_cast<void>(text_of("study.yaml", "run: run.yaml\n")), InputError);
+}
+
 TEST_F(Inspect, AnythingElseIsRefused) {
   for (const char* content : {"Dear reader\nthis is no recording\n", "PK\x03\x04zip", "imu: {file: a.csv}\n"})
     EXPECT_THROW(static_cast<void>(text_of("other.txt", content)), InputError) << content;

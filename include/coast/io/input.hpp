@@ -31,6 +31,9 @@ class ByteSource {
   [[nodiscard]] const std::string& name() const { return name_; }  ///< as given, for messages
   /// Length of the content: the file's, or that given in the gzip trailer (modulo 2^32). For reserving memory only.
   [[nodiscard]] std::uint64_t expected_size() const { return expected_size_; }
+  /// Bytes of a buffer to read it with: a quarter MiB, less where the whole file fits. Formats are told by trying: most
+  /// readers of a small file read its head alone, and clearing their buffers would take longer than reading it.
+  [[nodiscard]] std::size_t block() const { return block_; }
 
  private:
   struct Handle;
@@ -39,6 +42,7 @@ class ByteSource {
   std::string name_;
   std::uint64_t given_ = 0;
   std::uint64_t expected_size_ = 0;
+  std::size_t block_ = 0;
 };
 
 /// The first `size` decompressed bytes (fewer if the file is shorter), for recognising formats.

@@ -11,7 +11,9 @@
 namespace coast::jobs {
 
 struct InspectConfig {
-  std::filesystem::path file;   ///< any file of a recording that coast reads; tables with the default columns
+  /// Any file of a recording that coast reads, tables with the default columns; or a run file, whose recordings are then read
+  /// with its columns, axes and units.
+  std::filesystem::path file;
   std::optional<int> gps_week;  ///< of files with seconds of week only
 };
 
@@ -27,7 +29,7 @@ struct InspectResult {
   std::vector<std::string> absent;    ///< what the format could hold and the file does not
 };
 
-/// @throws InputError  the file is of no kind that coast reads, or nothing in it can be read
+/// @throws InputError  the file is of no kind that coast reads, or nothing in it can be read; a run file that has errors
 [[nodiscard]] InspectResult inspect(const InspectConfig& config, const Progress& progress);
 /// The lines for a terminal.
 [[nodiscard]] std::string told(const InspectConfig& config, const InspectResult& result);

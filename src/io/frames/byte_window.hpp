@@ -15,11 +15,10 @@ namespace coast::io {
 /// Bytes ahead of a position in a file, of which never more than the window is in memory.
 class ByteWindow {
  public:
-  static constexpr std::size_t kSize = std::size_t{1} << 18;
-  /// The most that `ahead` can be asked for.
-  static constexpr std::size_t kMost = kSize / 2;
+  /// The most that `ahead` can be asked for: half a block of files that do not fit into one.
+  static constexpr std::size_t kMost = std::size_t{1} << 17;
 
-  explicit ByteWindow(const std::filesystem::path& file) : source_(file), buffer_(kSize) {}
+  explicit ByteWindow(const std::filesystem::path& file) : source_(file), buffer_(source_.block()) {}
 
   /// All bytes in memory from the position on, at least `least` (at most kMost); fewer only at the end of the file. The view is
   /// valid until the next call.

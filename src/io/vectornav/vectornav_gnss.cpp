@@ -29,20 +29,6 @@ std::optional<record::FixQuality> vectornav_quality(std::uint8_t fix) {
   }
 }
 
-/// Position of the fields PosLla, else PosEcef.
-std::optional<Eigen::Vector3d> vectornav_position(const VectorNavMessage& message, VectorNavGroup group) {
-  constexpr double kNearest = 5e6, kFarthest = 8e6;  // m
-  if (const auto lla = message.field(group, 5)) {
-    const Eigen::Vector3d p = vector_at<double>(*lla);
-    return ecef_if_on_earth({p.x() * geo::kDegree, p.y() * geo::kDegree, p.z()});
-  }
-  if (const auto ecef = message.field(group, 6)) {
-    const Eigen::Vector3d r = vector_at<double>(*ecef);
-    if (r.norm() > kNearest && r.norm() < kFarthest) return r;
-  }
-  return std::nullopt;
-}
-
 /// Of PosU: standard deviations north, east, down.
 std::optional<Eigen::Matrix3d> vectornav_covariance(const VectorNavMessage& message, VectorNavGroup group) {
   constexpr double kLargest = 1e6;  // m

@@ -9,5 +9,6 @@ namespace coast::io {
 [[nodiscard]] bool begins_as_vectornav(std::string_view head);
 [[nodiscard]] record::ImuRecording read_vectornav_imu(const ImuFileOptions& options, Format::Near near);
 [[nodiscard]] record::GnssRecording read_vectornav_gnss(const GnssFileOptions& options, Format::Near near);
+[[nodiscard]] record::ObservationRecording read_vectornav_observations(const std::filesystem::path& file);
 
 }  // namespace coast::io

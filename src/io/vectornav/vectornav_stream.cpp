@@ -10,18 +10,19 @@ namespace {
 constexpr std::size_t kMasks = 6;
 constexpr std::size_t kRecordsHead = 4 * kMasks, kRecordTime = 16;
 
-/// Groups and masks as the sensor sends them, from the head of a file of records; empty: it is none.
+/// Groups and masks as the sensor sends them, from the head of a file of records; empty: it is none. The masks have bit 15,
+/// which announces a second word, where there are fields in it.
 std::string sent_head(std::string_view head) {
-  constexpr std::uint32_t kMostFields = 0x7FFF;
+  constexpr std::uint32_t kExtended = 1U << 15, kWord = 0xFFFF;
   if (head.size() < kRecordsHead) return {};
   std::string masks;
   std::uint8_t groups = 0;
   for (std::size_t i = 0; i < kMasks; ++i) {
     const auto mask = number_at<std::uint32_t>(head, 4 * i);
-    if (mask > kMostFields) return {};
+    if (((mask & kExtended) != 0) != (mask > kWord)) return {};
     if (mask == 0) continue;
     groups = static_cast<std::uint8_t>(groups | (2U << i));  // the common group is the first, and not in such a file
-    masks += head.substr(4 * i, 2);
+    masks += head.substr(4 * i, mask > kWord ? 4 : 2);
   }
   return groups == 0 ? std::string() : static_cast<char>(groups) + masks;
 }
@@ -45,7 +46,8 @@ bool VectorNavRecords::begins_in(std::string_view head) {
   const std::string sent = sent_head(head);
   if (sent.empty() || head.size() < kRecordsHead + kRecordTime || !possible_time(head.substr(kRecordsHead))) return false;
   VectorNavMessage message;
-  return message.parse(sent + std::string(head.substr(kRecordsHead + kRecordTime))) == VectorNavMessage::Head::kWhole;
+  return message.parse(sent + std::string(head.substr(kRecordsHead + kRecordTime)), VectorNavMessage::Form::kRecorded) ==
+         VectorNavMessage::Head::kWhole;
 }
 
 VectorNavRecords::VectorNavRecords(const std::filesystem::path& file) : window_(file) {
@@ -64,7 +66,7 @@ bool VectorNavRecords::next(VectorNavMessage& message) {
     }
     message_.resize(head_);
     message_ += ahead.substr(kRecordTime, fields);
-    const VectorNavMessage::Head parsed = message.parse(message_);
+    const VectorNavMessage::Head parsed = message.parse(message_, VectorNavMessage::Form::kRecorded);
     if (parsed == VectorNavMessage::Head::kUnknown || !possible_time(ahead)) return give_up(ahead.size());
     if (parsed == VectorNavMessage::Head::kWhole) {
       window_.advance(kRecordTime + fields);

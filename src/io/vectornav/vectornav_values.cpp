@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include "../receiver_positions.hpp"
+#include "coast/geo/units.hpp"
 #include "vectornav_readers.hpp"
 #include "vectornav_stream.hpp"
 
@@ -17,7 +19,34 @@ std::optional<geo::GpsTime> since_epoch(std::uint64_t nanoseconds) {
   return geo::GpsTime::from_nanoseconds(static_cast<std::int64_t>(nanoseconds));
 }
 
+/// Of fields with latitude, longitude (deg) and height, and with ECEF coordinates.
+std::optional<Eigen::Vector3d> position_of(const std::optional<std::string_view>& lla,
+                                           const std::optional<std::string_view>& ecef) {
+  constexpr double kNearest = 5e6, kFarthest = 8e6;  // m
+  if (lla) {
+    const Eigen::Vector3d p = vector_at<double>(*lla);
+    if (p.isZero(0.0)) return std::nullopt;  // before the first fix
+    return ecef_if_on_earth({p.x() * geo::kDegree, p.y() * geo::kDegree, p.z()});
+  }
+  if (ecef) {
+    const Eigen::Vector3d r = vector_at<double>(*ecef);
+    if (r.norm() > kNearest && r.norm() < kFarthest) return r;
+  }
+  return std::nullopt;
+}
+
 }  // namespace
+
+std::optional<Eigen::Vector3d> vectornav_position(const VectorNavMessage& message, VectorNavGroup group) {
+  return position_of(message.field(group, 5), message.field(group, 6));
+}
+
+std::optional<Eigen::Vector3d> vectornav_position(const VectorNavMessage& message) {
+  using enum VectorNavGroup;
+  for (const VectorNavGroup group : {kGnss1, kGnss2})
+    if (const auto r = vectornav_position(message, group)) return r;
+  return position_of(message.field(kIns, 1), message.field(kIns, 2));
+}
 
 std::optional<geo::GpsTime> week_and_nanoseconds(std::uint16_t week, std::uint64_t nanoseconds) {
   if (nanoseconds >= kWeekNanoseconds) return std::nullopt;

@@ -23,6 +23,11 @@ Eigen::Vector3d vector_at(std::string_view field, std::size_t offset = 0) {
 /// A week and nanoseconds of it.
 [[nodiscard]] std::optional<geo::GpsTime> week_and_nanoseconds(std::uint16_t week, std::uint64_t nanoseconds);
 
+/// ECEF, m: PosLla, else PosEcef, of a GNSS group; none where it is not on the Earth.
+[[nodiscard]] std::optional<Eigen::Vector3d> vectornav_position(const VectorNavMessage& message, VectorNavGroup group);
+/// Of either receiver, else of the sensor's own filter.
+[[nodiscard]] std::optional<Eigen::Vector3d> vectornav_position(const VectorNavMessage& message);
+
 /// Damage of the file, and messages between that are no binary output.
 [[nodiscard]] record::Events vectornav_file_events(const FrameCensus& census, const std::string& file);
 

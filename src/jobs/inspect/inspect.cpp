@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "coast/io/inspect.hpp"
+#include "coast/jobs/run_file.hpp"
 #include "inspect/sections.hpp"
 
 namespace coast::jobs {
@@ -38,10 +39,30 @@ void add_mission(const io::FileContents& contents, InspectResult& result) {
   if (contents.gnss) add_events(contents.gnss->events, result);
 }
 
+bool is_configuration(const std::filesystem::path& file) {
+  return file.extension() == ".yaml" || file.extension() == ".yml";
+}
+
+/// The recordings of a run file with its columns, axes and units: what `coast process` will see.
+InspectResult inspect_run(const std::filesystem::path& file, const Progress& progress) {
+  const Recordings recordings = load(read_run_config(file), progress);
+  InspectResult result;
+  result.format = "a run file";
+  result.sections.push_back({"IMU and positions, as `coast process` reads them", recordings.inspection});
+  add_events(recordings.imu.events, result);
+  add_events(recordings.gnss.events, result);
+  add_events(recordings.inspection_events, result);
+  for (const record::AidRecording& aid : recordings.aids) add_events(aid.events, result);
+  add(recordings.reference, trajectory_section, result);
+  add(recordings.marks, marks_section, result);
+  return result;
+}
+
 }  // namespace
 
 InspectResult inspect(const InspectConfig& config, const Progress& progress) {
   progress("reading", 0.0);
+  if (is_configuration(config.file)) return inspect_run(config.file, progress);
   io::FileContents contents = io::read_contents(config.file, config.gps_week);
   InspectResult result;
   result.format = contents.format;
