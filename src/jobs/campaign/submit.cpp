@@ -92,7 +92,11 @@ std::string write_snakemake(const Commands& use, const CampaignConfig& config, c
                             const CampaignEstimate& estimate) {
   const Request ask = request(estimate);
   const std::string plan = fs::absolute(config.file).lexically_normal().string();
-  const auto python = [](const std::string& text) { return fmt::format("r'''{}'''", text); };
+  const auto python = [](const std::string& text) {  // a string of it
+    std::string literal = "\"";
+    for (const char c : text) literal += c == '"' || c == '\\' ? std::string{'\\', c} : std::string{c};
+    return literal + '"';
+  };
   const auto braces = [](const std::string& text) {  // of the shell, not of snakemake
     std::string safe;
     for (const char c : text) safe.append(c == '{' || c == '}' ? 2 : 1, c);
@@ -102,7 +106,7 @@ std::string write_snakemake(const Commands& use, const CampaignConfig& config, c
       out / "Snakefile",
       fmt::format(
           "SHARDS = range(1, {} + 1)\n\nrule collect:\n    input: expand('shards/{{n}}.done', n=SHARDS)\n    shell: {}\n\n"
-          "rule shard:\n    input: {}\n    output: touch('shards/{{n}}.done')\n"
+          "rule shard:\n    input: lambda wildcards: {}\n    output: touch('shards/{{n}}.done')\n"
           "    resources: mem_mb={}, runtime={}\n    retries: 3\n"
           "    # Status 3: units whose numbers failed, which are collected with their errors.\n"
           "    shell: {}\n",
