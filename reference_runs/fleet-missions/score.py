@@ -31,17 +31,17 @@ def chi_squares(folder, missions):
             for figure, s in squares.items()}
 
 
-def found(result, truth, kind, named, size_of):
-    """What is told of the units, in the quantity that changed, and whether all of its sizes and dates are those put in."""
-    own = [(f, p) for f in result["findings"] for p in f["parts"]
-           if p["kind"] == kind and p["quantity"] == truth["quantity"] and [u["unit"] for u in p["units"]] == named]
-    numbers = {"told": bool(own)}
-    for finding, part in own:
-        name = f"{part['quantity']} {part['axis']}".strip()
-        numbers["sentence"] = finding["sentence"]
-        numbers[name] = {"size": part["size"], "size_sd": part["size_sd"], "true": size_of(part["axis"])}
+def found(result, truth, kind, named, size_of, day):
+    """What is told of the units that changed, and of nobody else, in the quantity that changed."""
+    parts = [p for f in result["findings"] for p in f["parts"]
+             if p["kind"] == kind and p["quantity"] == truth["quantity"] and [u["unit"] for u in p["units"]] == named]
+    numbers = {"told": int(bool(parts))}
+    for part in parts:
+        own = numbers[f"{part['quantity']} {part['axis']}".strip()] = {"size": part["size"], "size_sd": part["size_sd"], "true": size_of(part["axis"])}
         if kind == "step":
-            numbers[name]["date"], numbers[name]["date_95"] = part["date"], part["date_95"]
+            low, high = part["date_95"]
+            own["date_error_days"] = (datetime.date.fromisoformat(part["date"]) - day(truth["t"])).days
+            own["date_inside_95"] = int(low <= day(truth["t"]).isoformat() <= high)
     return numbers
 
 
@@ -49,17 +49,14 @@ def main():
     folder = pathlib.Path(sys.argv[1])
     truth = json.loads((folder / "truth.json").read_text())
     result = json.loads((folder / "fleet/fleet.json").read_text())
-    campaign = json.loads((folder / "campaign/campaign.json").read_text())
-    day = lambda t: (datetime.date.fromisoformat(truth["begin"]) + datetime.timedelta(days=365.25 * t)).isoformat()
+    group = json.loads((folder / "campaign/campaign.json").read_text())["groups"][0]
+    day = lambda t: datetime.date.fromisoformat(truth["begin"]) + datetime.timedelta(days=365.25 * t)  # noqa: E731
     ages, moved, firmware = truth["ages"], truth["moved"], truth["firmware"]
-    told = {"ages": found(result, ages, "drift", [ages["unit"]], lambda axis: ages["per_year"] if axis == ages["axis"] else 0.0),
-            "moved": found(result, moved, "step", [moved["unit"]], lambda axis: moved["size"]["xyz".index(axis)]) | {"true_date": day(moved["t"])},
-            "firmware": found(result, firmware, "step", firmware["units"], lambda axis: firmware["size"]) | {"true_date": day(firmware["t"])}}
-    sentences = {t.get("sentence") for t in told.values()}
-    numbers = {"missions": campaign["units"], "done": campaign["done"], "verdicts": campaign["groups"][0].get("verdicts"),
-               "chi_square": chi_squares(folder, truth["missions"]), "told": told,
-               "told_besides": [f["sentence"] for f in result["findings"] if f["sentence"] not in sentences],
-               "departures": [{k: d[k] for k in ("mission", "quantity", "axis", "standardised")} for d in result["departures"]]}
+    told = {"ages": found(result, ages, "drift", [ages["unit"]], lambda axis: ages["per_year"] if axis == ages["axis"] else 0.0, day),
+            "moved": found(result, moved, "step", [moved["unit"]], lambda axis: moved["size"]["xyz".index(axis)], day),
+            "firmware": found(result, firmware, "step", firmware["units"], lambda axis: firmware["size"], day)}
+    numbers = {"missions": group["units"], "done": group["done"], "verdicts": group["verdicts"], "chi_square": chi_squares(folder, truth["missions"]),
+               "told": told, "findings": len(result["findings"]), "departures": len(result["departures"])}
     json.dump(numbers, sys.stdout, indent=1)
     print()
 

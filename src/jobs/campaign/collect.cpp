@@ -42,21 +42,21 @@ std::string field(const Json& row, const std::string& column) {
 struct Collected {
   std::optional<UnitResult> result;
   std::string error;
-  std::string folder;  ///< of the result, from that of the campaign on; empty without a result
+  std::string folder;  ///< of the result, whether it is there or not; empty of a unit whose run file is wrong
 };
 
 Collected collected(Campaign& campaign, const CampaignUnit& unit) {
+  Collected of;
   try {
     const std::string key = campaign.key(unit);
+    of.folder = io::ResultStore::place_of(key);
     const std::optional<std::string> text = campaign.store().read(key, kResult);
-    if (!text) return {};
-    std::optional<UnitResult> result = result_from(*text);
-    if (!result) return {};
-    std::string error = result->error;
-    return {std::move(result), std::move(error), io::ResultStore::place_of(key)};
+    if (text) of.result = result_from(*text);
+    if (of.result) of.error = of.result->error;
   } catch (const InputError& error) {
-    return {std::nullopt, campaign.portable(error.what(), {}), {}};
+    of.error = campaign.portable(error.what(), {});
   }
+  return of;
 }
 
 /// The merged tables, written line by line.
