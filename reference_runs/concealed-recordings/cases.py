@@ -1,5 +1,5 @@
-"""cases.py COAST OUT [--shard I N] [--conceal-only]: effects in the IMU data of real recordings, and configurations falsified, by chance; key
-and diagnosis of every case are kept. What is there already is not made again, so an interrupted run goes on; shards share the cases out."""
+"""cases.py COAST OUT [--shard I N]: effects in the IMU data of real recordings, and configurations falsified, by chance; recording and
+key of every case. What is there already is not made again, so an interrupted run goes on; shards share the cases out."""
 
 import functools
 import json
@@ -110,4 +110,4 @@ def make(case, folder):
         json.dump({"recording": recording_of(case), "effect": key}, file)
 
 
-study.work_through(CASES, make, "", study.arguments())
+study.work_through(CASES, make, study.arguments())

@@ -8,7 +8,7 @@ import sys
 
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), "../../tools/lib"))
 
-from concealment.study import kept_in, share  # noqa: E402
+from concealment.study import diagnosed, share  # noqa: E402
 
 OWN = math.sqrt(17.07)  # sigmas by which an effect of the recording's own has to differ to be another: the smallest detectable size (Baarda)
 AS_IS = {"car": 900, "rover-h": 901, "rover-k": 902}
@@ -58,7 +58,7 @@ def table(scored):
 
 
 def main():
-    cases = kept_in(sys.argv[1])
+    cases = diagnosed(sys.argv[1])
     as_is = {name: cases[number]["diagnosis"]["effects"] for name, number in AS_IS.items() if number in cases}
     scored = {}
     for number, case in cases.items():

@@ -1,8 +1,7 @@
-"""cases.py COAST CONCEAL OUT [--shard I N] [--conceal-only]: conceals, diagnoses, and keeps key and result of every case.
+"""cases.py COAST CONCEAL OUT [--shard I N]: makes the recording and the key of every case.
 
 Of the first 300 cases every fourth is a clean mission, the others have one effect with a name. Then: 325 more clean missions; noise, converters
-and oscillations; relations outside the catalogue; pairs. What is there already is not made again, so an interrupted run goes on. Recordings can be made first,
-and diagnosed later.
+and oscillations; relations outside the catalogue; pairs. What is there already is not made again, so an interrupted run goes on.
 """
 
 import importlib.machinery
@@ -40,7 +39,7 @@ def program(path):
 def main():
     args = study.arguments("conceal")
     conceal = program(args.conceal)
-    study.work_through(CASES, lambda case, folder: conceal.main(["--seed", str(FIRST_SEED + case), "--out", folder, *options(case)]), "recording/", args)
+    study.work_through(CASES, lambda case, folder: conceal.main(["--seed", str(FIRST_SEED + case), "--out", folder, *options(case)]), args)
 
 
 main()

@@ -7,7 +7,7 @@ import sys
 
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), "../../tools/lib"))
 
-from concealment.study import kept_in, share  # noqa: E402
+from concealment.study import diagnosed, share  # noqa: E402
 
 FALSE_ALARM = 0.05
 DETECTABLE = math.sqrt(17.07)  # sigmas of the smallest detectable size: alpha 0.1 %, power 80 % (Baarda)
@@ -104,7 +104,7 @@ def pair(case):
 
 
 def main():
-    cases = kept_in(sys.argv[1])
+    cases = diagnosed(sys.argv[1])
     clean = [c for c in cases.values() if not c["key"]["effects"]]
     raised = sum(bool(c["diagnosis"]["effects"]) for c in clean)
     result = {"cases": len(cases), "clean": {"of": len(clean), "raised": raised, "share": raised / max(1, len(clean)),

@@ -34,6 +34,59 @@ void compare(const Series& series, std::size_t index, const PanelChanges& model,
   }
 }
 
+/// Tails of a fleet, and of each of its panels.
+struct FleetTails {
+  Tails common;
+  std::vector<Tails> own;
+
+  /// By the tails of the whole fleet, or by those of its panel where they are heavier: figures differ in how much of their
+  /// scatter is the missions' own, and by common tails alone those with the heaviest would depart too often.
+  [[nodiscard]] double probability(const Departure& d) const {
+    const auto by = [&d](const Tails& t) { return student_two_sided(d.standardised / std::max(t.scale, 1e-12), t.nu); };
+    return std::max(by(common), by(own[d.panel]));
+  }
+};
+
+/// @param all    largest first
+/// @param first  how many of them are in question
+FleetTails tails_without(const std::vector<Departure>& all, std::size_t first, std::size_t panels) {
+  std::vector<double> fleet;
+  std::vector<std::vector<double>> of_panel(panels);
+  std::vector<std::size_t> in_question(panels, 0);
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    if (i < first) {
+      ++in_question[all[i].panel];
+      continue;
+    }
+    fleet.push_back(all[i].standardised);
+    of_panel[all[i].panel].push_back(all[i].standardised);
+  }
+  FleetTails tails{heaviest_tails(fleet, first), {}};
+  for (std::size_t p = 0; p < panels; ++p) tails.own.push_back(likeliest_tails(of_panel[p], in_question[p]));
+  return tails;
+}
+
+/// Whether the largest departs: by itself, or because a smaller one does when all that are as large are in question with it. Of
+/// several that depart one would else hide the others. Rosner (1983), Technometrics 25, 165.
+/// @param all  largest first
+bool largest_departs(std::vector<Departure>& all, std::size_t panels, double level) {
+  constexpr double kSuspect = 3.5;
+  constexpr std::size_t kMost = 20;
+  bool departs = false;
+  if (level <= 0.0) return departs;
+  for (std::size_t k = 1; k <= std::min(kMost, all.size()) && std::abs(all[k - 1].standardised) > kSuspect && !departs; ++k) {
+    const FleetTails tails = tails_without(all, k, panels);
+    departs = tails.probability(all[k - 1]) * static_cast<double>(all.size() - k + 1) <= level;
+    if (departs) all[0].p = tails.probability(all[0]);
+  }
+  return departs;
+}
+
+/// Most improbable first; of those whose probabilities are 0 the largest.
+bool rarer(const Departure& a, const Departure& b) {
+  return a.p != b.p ? a.p < b.p : std::abs(a.standardised) > std::abs(b.standardised);
+}
+
 }  // namespace
 
 std::vector<Departure> find_departures(const Fleet& fleet, const std::vector<PanelChanges>& panels, double level,
@@ -58,17 +111,17 @@ std::vector<Departure> find_departures(const Fleet& fleet, const std::vector<Pan
     if (rest.empty()) break;
     std::ranges::sort(
         rest, [](const Departure& a, const Departure& b) { return std::abs(a.standardised) > std::abs(b.standardised); });
-    std::vector<double> others;  // the one in question must not widen the tails that it is judged by
-    for (std::size_t i = 1; i < rest.size(); ++i) others.push_back(rest[i].standardised);
-    tails = heaviest_tails(others);
-    for (Departure& d : rest) d.p = student_two_sided(d.standardised / std::max(tails.scale, 1e-12), tails.nu);
+    if (outliers.size() >= kMost || !largest_departs(rest, fleet.panels.size(), level)) break;
     Departure& first = rest.front();
-    if (first.p * static_cast<double>(rest.size()) > level || outliers.size() >= kMost) break;
     first.outlier = true;
     outliers.push_back(first);
     left_out[first.panel][first.series][first.index] = true;
     refresh(first.panel, first.series);
   }
+  const FleetTails found = tails_without(rest, std::min<std::size_t>(1, rest.size()), fleet.panels.size());
+  tails = found.common;
+  for (Departure& d : rest) d.p = found.probability(d);
+  std::ranges::sort(rest, rarer);
   outliers.insert(outliers.end(), rest.begin(), rest.end());
   return outliers;
 }

@@ -22,6 +22,7 @@ double restricted(const std::vector<Observations>& units, const Scatter& scatter
 template <class Function>
 double maximise(Function f, double high) {
   constexpr int kGrid = 24;
+  constexpr double kTolerance = 1e-9;  // below it rounding of the likelihood decides
   const auto at = [&](int i) { return high * std::pow(static_cast<double>(i) / kGrid, 3.0); };
   int best = 0;
   double best_value = f(0.0);
@@ -30,10 +31,20 @@ double maximise(Function f, double high) {
   double low = at(std::max(best - 1, 0));
   double top = at(std::min(best + 1, kGrid));
   const double golden = 0.5 * (std::sqrt(5.0) - 1.0);
-  for (int step = 0; step < 40; ++step) {
-    const double a = top - golden * (top - low);
-    const double b = low + golden * (top - low);
-    (f(a) > f(b) ? top : low) = f(a) > f(b) ? b : a;
+  double a = top - golden * (top - low);
+  double b = low + golden * (top - low);
+  double f_a = f(a);
+  double f_b = f(b);
+  while (top - low > kTolerance * high) {
+    if (f_a > f_b) {
+      top = b;
+      b = a, f_b = f_a;
+      a = top - golden * (top - low), f_a = f(a);
+    } else {
+      low = a;
+      a = b, f_a = f_b;
+      b = low + golden * (top - low), f_b = f(b);
+    }
   }
   const double found = 0.5 * (low + top);
   return f(found) > best_value ? found : at(best);

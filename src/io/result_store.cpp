@@ -60,8 +60,12 @@ bool is_left_behind(const std::string& name, const std::string& host) {
 
 ResultStore::ResultStore(fs::path folder) : folder_(std::move(folder)) {}
 
+std::string ResultStore::place_of(std::string_view key) {
+  return fmt::format("results/{}/{}", key.substr(0, 2), key);
+}
+
 fs::path ResultStore::folder_of(std::string_view key) const {
-  return folder_ / "results" / key.substr(0, 2) / key;
+  return folder_ / place_of(key);
 }
 
 std::optional<std::string> ResultStore::read(std::string_view key, const char* file) const {

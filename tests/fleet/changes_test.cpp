@@ -88,6 +88,25 @@ TEST(Changes, AreFoundDatedAndSized) {
   EXPECT_FALSE(found.departures[1].outlier);
 }
 
+TEST(Departures, DoNotHideOneAnother) {
+  Fleet all = test::drawn_fleet(31);
+  // Thirteen sigmas of a mission with its scatter: each is what the tails would be judged by if the other counted in full.
+  const std::vector<std::pair<std::size_t, std::size_t>> added{{2, 5}, {7, 9}, {10, 4}};
+  for (const auto& [unit, mission] : added) {
+    Estimate& e = all.panels[1].series[unit].estimates[mission];
+    e.value += 13.0 * std::hypot(2.0, e.sigma);
+  }
+  const FleetChanges found = find_changes(all, quick());
+  for (const PanelChanges& panel : found.panels) EXPECT_TRUE(panel.changes.empty());
+  for (std::size_t i = 0; i < 3; ++i) {
+    const Departure& d = found.departures[i];
+    EXPECT_TRUE(d.outlier);
+    EXPECT_EQ(d.panel, 1U);
+    EXPECT_TRUE(std::ranges::find(added, std::pair{d.series, d.index}) != added.end());
+  }
+  EXPECT_FALSE(found.departures[3].outlier);
+}
+
 TEST(Changes, LevelsOfAGroupAreTold) {
   Fleet all = test::drawn_fleet(22);
   all.factors = {"firmware"};

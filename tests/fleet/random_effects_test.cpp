@@ -141,6 +141,22 @@ TEST(Student, TellsTheTailsOfASample) {
   EXPECT_GT(heaviest_tails(b).nu, 30.0);
 }
 
+TEST(Student, WhatIsLargerCountsAsSuch) {
+  // R: v <- 1.5*qt((1:40-0.5)/40, 4); o <- v[order(abs(v))][1:39]; optimize(function(ls) sum(dt(o/exp(ls), 1/inv, log=TRUE)) -
+  // 39*ls +
+  //    log(2*pt(-max(abs(o))/exp(ls), 1/inv)), c(-3,3), maximum=TRUE) for inv in 0.4*(0:40)/40
+  std::vector<double> values;
+  for (int i = 0; i < 20; ++i) {
+    const double v = 1.5 * student_two_sided_quantile((2.0 * i + 1.0) / 40.0, 4.0);
+    values.insert(values.end(), {-v, v});
+  }
+  values.erase(values.begin());  // of the two largest
+  EXPECT_NEAR(likeliest_tails(values, 1).nu, 1.0 / 0.27, 1e-9);
+  EXPECT_NEAR(likeliest_tails(values, 1).scale, 1.482767, 2e-5);
+  EXPECT_NEAR(heaviest_tails(values, 1).nu, 2.5, 1e-9);
+  EXPECT_NEAR(heaviest_tails(values, 1).scale, 1.355692, 2e-5);
+}
+
 TEST(Pool, TemperatureIsNotAgeingAndUnitsLendStrength) {
   Fleet all = test::drawn_fleet(4);
   Panel& panel = all.panels[0];

@@ -20,6 +20,11 @@ struct Tails {
 };
 /// Heaviest tails that the values do not contradict: the lower end of a one-sided 95 % profile interval of nu, from 2.5 to
 /// infinity, with the scale that goes with it. Without values: normal, scale 1.
-[[nodiscard]] Tails heaviest_tails(const std::vector<double>& values);
+///
+/// @param larger  how many more values there are, larger than all of these: those in question, which must not widen the tails
+///                that they are judged by. Left out altogether they would be missed in the tails of what does not depart
+[[nodiscard]] Tails heaviest_tails(const std::vector<double>& values, std::size_t larger = 0);
+/// Likewise the likeliest.
+[[nodiscard]] Tails likeliest_tails(const std::vector<double>& values, std::size_t larger = 0);
 
 }  // namespace coast::fleet

@@ -15,6 +15,8 @@ class ResultStore {
  public:
   explicit ResultStore(std::filesystem::path folder);
 
+  /// results/ab/abcdef..., from the folder of the store on.
+  [[nodiscard]] static std::string place_of(std::string_view key);
   [[nodiscard]] std::filesystem::path folder_of(std::string_view key) const;
   /// Content of a file of a result; none if there is no such result, or no such file of it.
   [[nodiscard]] std::optional<std::string> read(std::string_view key, const char* file) const;

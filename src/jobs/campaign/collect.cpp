@@ -42,19 +42,21 @@ std::string field(const Json& row, const std::string& column) {
 struct Collected {
   std::optional<UnitResult> result;
   std::string error;
+  std::string folder;  ///< of the result, whether it is there or not; empty of a unit whose run file is wrong
 };
 
 Collected collected(Campaign& campaign, const CampaignUnit& unit) {
+  Collected of;
   try {
-    const std::optional<std::string> text = campaign.store().read(campaign.key(unit), kResult);
-    if (!text) return {};
-    std::optional<UnitResult> result = result_from(*text);
-    if (!result) return {};
-    std::string error = result->error;
-    return {std::move(result), std::move(error)};
+    const std::string key = campaign.key(unit);
+    of.folder = io::ResultStore::place_of(key);
+    const std::optional<std::string> text = campaign.store().read(key, kResult);
+    if (text) of.result = result_from(*text);
+    if (of.result) of.error = of.result->error;
   } catch (const InputError& error) {
-    return {std::nullopt, campaign.portable(error.what(), {})};
+    of.error = campaign.portable(error.what(), {});
   }
+  return of;
 }
 
 /// The merged tables, written line by line.
@@ -63,7 +65,7 @@ class Tables {
   Tables(const Campaign& campaign, const std::filesystem::path& out)
       : campaign_(campaign), missions_(out / "missions.csv"), outages_(out / "outages.csv"), estimates_(out / "estimates.csv") {
     constexpr const char* kFactors = "mission,seed,error_model,outages,effects";
-    missions_.write(fmt::format("{},status,{},error\n", kFactors, fmt::join(mission_columns(), ",")));
+    missions_.write(fmt::format("{},status,{},error,result\n", kFactors, fmt::join(mission_columns(), ",")));
     outages_.write(fmt::format("{},start_s,duration_s,{}\n", kFactors, outage_columns()));
     estimates_.write("mission,unit,start,quantity,axis,value,sigma,unit_of_value,temperature_degC\n");
   }
@@ -78,7 +80,7 @@ class Tables {
     const Json& row = of.result ? of.result->row : none;
     std::string line = fmt::format("{},{}", factors, status);
     for (const std::string& column : mission_columns()) line += "," + field(row, column);
-    missions_.write(fmt::format("{},{}\n", line, field(of.error)));
+    missions_.write(fmt::format("{},{},{}\n", line, field(of.error), of.folder));
     if (!of.result) return;
     for (const std::string& outage : of.result->outages) outages_.write(fmt::format("{},{}\n", factors, outage));
     // One mission of the statistics of fleets is one unit here: with its factors it has a name of its own.

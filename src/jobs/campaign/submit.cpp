@@ -76,10 +76,14 @@ std::string write_slurm(const Commands& use, const fs::path& out, const Campaign
   return "bash " + quoted((out / "submit.sh").string());
 }
 
-// The log of finished shards is that of one plan: with another there is other work, under the same numbers.
+/// Marks of finished shards are those of one plan: with another there is other work, under the same numbers.
+std::string marks(const CampaignConfig& config) {
+  return "shards-" + io::sha256_of_file(config.file).substr(0, 12);
+}
+
 std::string write_parallel(const Commands& use, const CampaignConfig& config, const fs::path& out,
                            const CampaignEstimate& estimate) {
-  const std::string log = (out / fmt::format("shards-{}.log", io::sha256_of_file(config.file).substr(0, 12))).string();
+  const std::string log = (out / (marks(config) + ".log")).string();
   io::write_text(
       out / "parallel.sh",
       fmt::format("#!/bin/bash\n# As many shards at a time as there are processors, or as parallel's own options here say.\n"
@@ -91,8 +95,11 @@ std::string write_parallel(const Commands& use, const CampaignConfig& config, co
 std::string write_snakemake(const Commands& use, const CampaignConfig& config, const fs::path& out,
                             const CampaignEstimate& estimate) {
   const Request ask = request(estimate);
-  const std::string plan = fs::absolute(config.file).lexically_normal().string();
-  const auto python = [](const std::string& text) { return fmt::format("r'''{}'''", text); };
+  const auto python = [](const std::string& text) {  // a string of it
+    std::string literal = "\"";
+    for (const char c : text) literal += c == '"' || c == '\\' ? std::string{'\\', c} : std::string{c};
+    return literal + '"';
+  };
   const auto braces = [](const std::string& text) {  // of the shell, not of snakemake
     std::string safe;
     for (const char c : text) safe.append(c == '{' || c == '}' ? 2 : 1, c);
@@ -100,17 +107,16 @@ std::string write_snakemake(const Commands& use, const CampaignConfig& config, c
   };
   io::write_text(
       out / "Snakefile",
-      fmt::format(
-          "SHARDS = range(1, {} + 1)\n\nrule collect:\n    input: expand('shards/{{n}}.done', n=SHARDS)\n    shell: {}\n\n"
-          "rule shard:\n    input: {}\n    output: touch('shards/{{n}}.done')\n"
-          "    resources: mem_mb={}, runtime={}\n    retries: 3\n"
-          "    # Status 3: units whose numbers failed, which are collected with their errors.\n"
-          "    shell: {}\n",
-          estimate.shards, python(braces(use.collect())), python(plan), ask.megabytes, ask.minutes,
-          python(braces(use.run("WILDCARD"))
-                     .replace(braces(use.run("WILDCARD")).find("WILDCARD"), 8,
-                              fmt::format("{{wildcards.n}}/{}", estimate.shards)) +
-                 " || test $? -eq 3")));
+      fmt::format("SHARDS = range(1, {} + 1)\n\nrule collect:\n    input: expand('{}/{{n}}.done', n=SHARDS)\n    shell: {}\n\n"
+                  "rule shard:\n    output: touch('{}/{{n}}.done')\n"
+                  "    resources: mem_mb={}, runtime={}\n    retries: 3\n"
+                  "    # Status 3: units whose numbers failed, which are collected with their errors.\n"
+                  "    shell: {}\n",
+                  estimate.shards, marks(config), python(braces(use.collect())), marks(config), ask.megabytes, ask.minutes,
+                  python(braces(use.run("WILDCARD"))
+                             .replace(braces(use.run("WILDCARD")).find("WILDCARD"), 8,
+                                      fmt::format("{{wildcards.n}}/{}", estimate.shards)) +
+                         " || test $? -eq 3")));
   return fmt::format("snakemake --directory {0} --snakefile {0}/Snakefile --cores all", quoted(out.string()));
 }
 
