@@ -50,8 +50,8 @@ struct Projection::State {
   void note_equal_datums(const geo::Geodetic& place);
   void note_area(const Eigen::Vector3d& r_e);
   [[nodiscard]] bool covers(const Eigen::Vector3d& r_e) const;
-  /// Metres on the grid, east and north, for a metre in each direction of n.
-  [[nodiscard]] Eigen::Matrix2d gradient(const Eigen::Vector3d& r_e, const Eigen::Matrix3d& C_n_e, geo::GpsTime t);
+  /// Metres on the grid, east and north, for a metre along a unit vector in e.
+  [[nodiscard]] Eigen::Vector2d image(const Eigen::Vector3d& direction_e, const Eigen::Vector3d& r_e, geo::GpsTime t);
 
   std::mutex mutex;  ///< PROJ's objects are used by one thread at a time
   ProjContext context;
@@ -155,16 +155,11 @@ Eigen::Vector3d Projection::State::project(const Eigen::Vector3d& r_e, geo::GpsT
 }
 
 // Central differences over 100 m: the third derivative adds (50 m / R)^2 = 6e-11, rounding of coordinates 1e-11.
-Eigen::Matrix2d Projection::State::gradient(const Eigen::Vector3d& r_e, const Eigen::Matrix3d& C_n_e, geo::GpsTime t) {
+Eigen::Vector2d Projection::State::image(const Eigen::Vector3d& direction_e, const Eigen::Vector3d& r_e, geo::GpsTime t) {
   constexpr double kStep = 50.0;  // m
-  Eigen::Matrix2d J;
-  for (Eigen::Index i = 0; i < 2; ++i) {
-    const Eigen::Vector3d step = kStep * C_n_e.col(i);
-    const Eigen::Vector3d d = (project(r_e + step, t) - project(r_e - step, t)) / (2.0 * kStep);
-    J(0, i) = target.easting.direction * target.easting.metres * d.x();
-    J(1, i) = target.northing.direction * target.northing.metres * d.y();
-  }
-  return J;
+  const Eigen::Vector3d step = kStep * direction_e;
+  const Eigen::Vector3d d = (project(r_e + step, t) - project(r_e - step, t)) / (2.0 * kStep);
+  return {target.easting.direction * target.easting.metres * d.x(), target.northing.direction * target.northing.metres * d.y()};
 }
 
 Projection::Projection(const ProjectionOptions& options) : state_(std::make_unique<State>(options)) {
@@ -188,8 +183,8 @@ GridPosition Projection::at(const Eigen::Vector3d& r_e, geo::GpsTime t) const {
 
 double Projection::convergence(const Eigen::Vector3d& r_e, geo::GpsTime t) const {
   const std::scoped_lock lock(state_->mutex);
-  const Eigen::Matrix2d J = state_->gradient(r_e, geo::C_n_e(geo::geodetic_from_ecef(r_e)), t);
-  return -std::atan2(J(0, 0), J(1, 0));
+  const Eigen::Vector2d north = state_->image(geo::C_n_e(geo::geodetic_from_ecef(r_e)).col(0), r_e, t);
+  return -std::atan2(north.x(), north.y());
 }
 
 GridScale Projection::scale(const Eigen::Vector3d& r_e, geo::GpsTime t) const {
@@ -198,8 +193,8 @@ GridScale Projection::scale(const Eigen::Vector3d& r_e, geo::GpsTime t) const {
   const Eigen::Matrix3d C_n_e = geo::C_n_e(p);
   const auto root = [&](double height) {
     const Eigen::Vector3d r = geo::ecef_from_geodetic({p.latitude, p.longitude, height});
-    const Eigen::Matrix2d J = state_->gradient(r, C_n_e, t);
-    return std::sqrt(std::abs(J(0, 0) * J(1, 1) - J(0, 1) * J(1, 0)));
+    const Eigen::Vector2d north = state_->image(C_n_e.col(0), r, t), east = state_->image(C_n_e.col(1), r, t);
+    return std::sqrt(std::abs(north.x() * east.y() - north.y() * east.x()));
   };
   return {root(0.0), root(p.height)};
 }
