@@ -1,6 +1,10 @@
 #include "operation.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
+#include <array>
+#include <span>
 #include <utility>
 
 #include "coast/geo/units.hpp"
@@ -18,6 +22,10 @@ constexpr Search kSearches[] = {
     {PROJ_SPATIAL_CRITERION_STRICT_CONTAINMENT, PROJ_INTERMEDIATE_CRS_USE_IF_NO_DIRECT_TRANSFORMATION},
     {PROJ_SPATIAL_CRITERION_PARTIAL_INTERSECTION, PROJ_INTERMEDIATE_CRS_USE_IF_NO_DIRECT_TRANSFORMATION},
     {PROJ_SPATIAL_CRITERION_PARTIAL_INTERSECTION, PROJ_INTERMEDIATE_CRS_USE_ALWAYS}};
+
+// Frames of global networks, and that of Europe, from which PROJ does not find the way to every national one by itself:
+// ITRF2014, ETRS89.
+constexpr std::array kFrames{"EPSG:7912", "EPSG:4937"};
 
 ProjList operations_between(const ProjContext& context, const PJ* from, const PJ* to, const Search& search,
                             const std::optional<geo::Geodetic>& place) {
@@ -41,11 +49,11 @@ std::vector<std::string> missing_grids(const ProjContext& context, const PJ* ope
   std::vector<std::string> names;
   const int count = proj_coordoperation_get_grid_used_count(context.get(), operation);
   for (int i = 0; i < count; ++i) {
-    const char* name = "";
+    const char *name = "", *address = "";
     int available = 0;
-    proj_coordoperation_get_grid_used(context.get(), operation, i, &name, nullptr, nullptr, nullptr, nullptr, nullptr,
+    proj_coordoperation_get_grid_used(context.get(), operation, i, &name, nullptr, nullptr, &address, nullptr, nullptr,
                                       &available);
-    if (available == 0) names.emplace_back(name);
+    if (available == 0) names.push_back(*address == '\0' ? name : fmt::format("{} ({})", name, address));
   }
   return names;
 }
@@ -76,12 +84,63 @@ void take_first(const ProjContext& context, const PJ_OBJ_LIST* list, CoordinateO
 CoordinateOperation direct_operation(ProjContext& context, const PJ* from, const PJ* to,
                                      const std::optional<geo::Geodetic>& place) {
   CoordinateOperation best;
+  std::vector<std::string> missing;  // of the first search that knows some: wider ones bring grids of other places
   for (const Search& search : kSearches) {
     if (!best.steps.empty()) break;
     const ProjList list = operations_between(context, from, to, search, place);
     take_first(context, list.get(), best);
+    if (missing.empty()) missing = best.missing;
   }
+  best.missing = std::move(missing);
   static_cast<void>(context.take_log());  // of operations without their grids
+  return best;
+}
+
+/// By way of another geographic CRS; none where that is the first.
+/// @param rest  from the pivot on
+CoordinateOperation through(ProjContext& context, const PJ* from, const PJ* pivot, CoordinateOperation rest,
+                            const std::optional<geo::Geodetic>& place) {
+  CoordinateOperation chain = direct_operation(context, from, pivot, place);
+  add_new(chain.missing, rest.missing);
+  if (chain.steps.empty() || rest.steps.empty()) {
+    chain.steps.clear();
+    return chain;
+  }
+  for (ProjObject& step : rest.steps) chain.steps.push_back(std::move(step));
+  chain.name += " + " + rest.name;
+  if (chain.accuracy_m) *chain.accuracy_m += rest.accuracy_m.value_or(0.0);  // a map projection has none of its own
+  return chain;
+}
+
+/// The more accurate of two, the first if neither is.
+CoordinateOperation better(CoordinateOperation a, CoordinateOperation b) {
+  constexpr double kUnknown = 1e3;  // m
+  if (b.steps.empty()) {
+    if (a.steps.empty() && a.missing.empty()) a.missing = std::move(b.missing);
+    return a;
+  }
+  return a.steps.empty() || b.accuracy_m.value_or(kUnknown) < a.accuracy_m.value_or(kUnknown) ? std::move(b) : std::move(a);
+}
+
+struct Ends {
+  const PJ *from, *to, *datum;
+};
+
+CoordinateOperation best_by_way(ProjContext& context, const Ends& ends, std::span<const char* const> frames,
+                                const std::optional<geo::Geodetic>& place) {
+  const auto starts_at = [&](const PJ* pivot) { return proj_is_equivalent_to(ends.from, pivot, PJ_COMP_EQUIVALENT) != 0; };
+  CoordinateOperation best = direct_operation(context, ends.from, ends.to, place);
+  constexpr double kGood = 1.0;  // m: as good as any way from WGS 84, which itself is known to a metre or two
+  const bool good = best.accuracy_m && *best.accuracy_m <= kGood;
+  if (!good && ends.datum != nullptr && !starts_at(ends.datum))
+    best = better(std::move(best),
+                  through(context, ends.from, ends.datum, direct_operation(context, ends.datum, ends.to, place), place));
+  for (std::size_t i = 0; i < frames.size() && best.steps.empty(); ++i) {
+    const ProjObject pivot(proj_create(context.get(), frames[i]));
+    if (!pivot || starts_at(pivot.get())) continue;
+    CoordinateOperation rest = best_by_way(context, {pivot.get(), ends.to, ends.datum}, frames.subspan(i + 1), place);
+    best = better(std::move(best), through(context, ends.from, pivot.get(), std::move(rest), place));
+  }
   return best;
 }
 
@@ -98,20 +157,7 @@ PJ_COORD CoordinateOperation::apply(PJ_COORD coordinates) const {
 
 CoordinateOperation best_operation(ProjContext& context, const PJ* from, const PJ* to, const PJ* datum,
                                    const std::optional<geo::Geodetic>& place) {
-  constexpr double kUnknown = 1e3;  // m
-  CoordinateOperation direct = direct_operation(context, from, to, place);
-  if (datum == nullptr || proj_is_equivalent_to(from, datum, PJ_COMP_EQUIVALENT) != 0) return direct;
-  CoordinateOperation shift = direct_operation(context, from, datum, place);
-  CoordinateOperation rest = direct_operation(context, datum, to, place);
-  if (shift.steps.empty() || rest.steps.empty()) return direct;
-  // A map projection has no accuracy of its own.
-  const double through = shift.accuracy_m.value_or(kUnknown) + rest.accuracy_m.value_or(0.0);
-  if (!direct.steps.empty() && direct.accuracy_m.value_or(kUnknown) <= through) return direct;
-  shift.steps.push_back(std::move(rest.steps.front()));
-  shift.name += " + " + rest.name;
-  if (shift.accuracy_m) shift.accuracy_m = through;
-  add_new(shift.missing, rest.missing);
-  return shift;
+  return best_by_way(context, {from, to, datum}, kFrames, place);
 }
 
 }  // namespace coast::io

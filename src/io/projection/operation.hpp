@@ -10,7 +10,7 @@
 
 namespace coast::io {
 
-/// One transformation, or one through the geographic CRS of the target: PROJ does not find every such chain by itself.
+/// One transformation, or several by way of geographic CRS: PROJ does not find every such chain by itself.
 struct CoordinateOperation {
   std::vector<ProjObject> steps;          ///< longitude, latitude in degrees, height in m, year to the CRS; empty: none
   std::string name = {};                  ///< in PROJ's words

@@ -109,9 +109,11 @@ void Projection::State::note_equal_datums(const geo::Geodetic& place) {
   const CoordinateOperation shift = best_operation(context, source.get(), datum.get(), nullptr, place);
   if (shift.steps.empty()) return;
   const double latitude = place.latitude / geo::kDegree, longitude = place.longitude / geo::kDegree;
-  const PJ_COORD moved = shift.apply(proj_coord(longitude, latitude, place.height, options.epoch.value_or(2020.0)));
   const double metres = geo::radii_of_curvature(place.latitude).prime_vertical * geo::kDegree;
-  if (std::hypot(moved.v[0] - longitude, moved.v[1] - latitude) * metres > kMoved) return;
+  for (const double year : {1990.0, 2020.0}) {  // a transformation that depends on time is none in one year
+    const PJ_COORD moved = shift.apply(proj_coord(longitude, latitude, place.height, year));
+    if (std::hypot(moved.v[0] - longitude, moved.v[1] - latitude) * metres > kMoved) return;
+  }
   events.push_back(said(record::Event::Severity::kInfo, "equal_datums",
                         fmt::format("{} and {} are taken as one datum (null transformation): if the base's coordinates are in "
                                     "an ITRF, name it with `from`, such as EPSG:7912.",
@@ -120,11 +122,8 @@ void Projection::State::note_equal_datums(const geo::Geodetic& place) {
 
 void Projection::State::note_area(const Eigen::Vector3d& r_e) {
   if (covers(r_e)) return;
-  const char* area = nullptr;
-  proj_get_area_of_use(context.get(), target.horizontal.get(), nullptr, nullptr, nullptr, nullptr, &area);
   events.push_back(said(record::Event::Severity::kWarning, "outside_area_of_use",
-                        fmt::format("The mission begins outside the area of use of {} ({}). Is it the right zone?", target.name,
-                                    area == nullptr ? "" : area)));
+                        fmt::format("The mission begins outside the area of use of {}. Is it the right zone?", target.name)));
 }
 
 bool Projection::State::covers(const Eigen::Vector3d& r_e) const {
