@@ -12,6 +12,7 @@ find_package(TBB REQUIRED)
 find_package(ZLIB REQUIRED)
 find_package(BZip2 REQUIRED)
 find_package(SQLite3 REQUIRED)
+find_package(PROJ CONFIG REQUIRED)
 find_package(Threads REQUIRED)
 
 # CHOLMOD of Debian 12 comes without files for CMake.

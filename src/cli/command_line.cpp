@@ -168,10 +168,25 @@ void add_convert(CLI::App& app, std::filesystem::path& input, std::filesystem::p
   convert->add_option("--rate", choice.rate_hz, "Hz (default: every epoch)")->check(CLI::Range(1e-3, 1e5));
   convert->add_option("--geoid-height", choice.geoid_height_m, "geoid above the ellipsoid, m, for heights above mean sea level")
       ->check(CLI::Range(-120.0, 120.0));
+  auto* crs = convert->add_option("--crs", choice.projection.crs, "CRS of a map: EPSG:25832, EPSG:25832+5773, or a PROJ string")
+                  ->type_name("CRS");
+  convert->add_option("--from", choice.projection.from, "geographic CRS of the input: EPSG:7912 is ITRF2014")
+      ->type_name("CRS")
+      ->capture_default_str()
+      ->needs(crs);
+  convert->add_option("--epoch", choice.projection.epoch, "decimal year at which the positions are valid (default: their time)")
+      ->check(CLI::Range(1980.0, 2100.0))
+      ->needs(crs);
+  convert
+      ->add_option("--heights", choice.heights,
+                   "ellipsoidal or orthometric (default: orthometric if the CRS has a vertical part)")
+      ->type_name("KIND")
+      ->check(CLI::IsMember({"ellipsoidal", "orthometric"}))
+      ->needs(crs);
   convert->add_flag("--quiet", common.quiet, "only warnings and errors");
   convert->footer(
       "Examples:\n  coast convert results/trajectory.nav trajectory.gpx --rate 1\n  coast convert rover.ubx "
-      "rover.obs\n\nFormats:\n" +
+      "rover.obs\n  coast convert results/trajectory.nav utm.csv --to grid --crs EPSG:25832\n\nFormats:\n" +
       jobs::convert_formats("  "));
   convert->callback([&] { cli::convert(input, output, choice, common); });
 }

@@ -163,6 +163,11 @@ void convert(const std::filesystem::path& input, const std::filesystem::path& ou
   config.gps_week = choice.gps_week;
   config.rate_hz = choice.rate_hz;
   config.geoid_height_m = choice.geoid_height_m;
+  if (!choice.projection.crs.empty()) {
+    io::ProjectionOptions projection = choice.projection;
+    if (!choice.heights.empty()) projection.orthometric = choice.heights == "orthometric";
+    config.projection = std::make_shared<io::Projection>(projection);
+  }
   finish(config, jobs::convert(config, on_terminal(line, options.quiet)), output.parent_path(), line, options.quiet);
 }
 

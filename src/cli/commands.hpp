@@ -8,6 +8,8 @@
 
 #include <Eigen/Core>
 
+#include "coast/jobs/convert.hpp"
+
 namespace coast::cli {
 
 /// Options common to all subcommands.
@@ -40,6 +42,8 @@ struct ConvertOptions {
   std::optional<int> gps_week;
   std::optional<double> rate_hz;
   std::optional<double> geoid_height_m;
+  io::ProjectionOptions projection;  ///< none if its CRS is empty
+  std::string heights;               ///< empty: as the CRS has it
 };
 void convert(const std::filesystem::path& input, const std::filesystem::path& output, const ConvertOptions& choice,
              const CommonOptions& options);

@@ -88,12 +88,37 @@ nlohmann::json event_of(const nlohmann::json& summary, const std::string& kind) 
   return {};
 }
 
+/// Ways between events are on the grid what they are on the ground, times the combined scale, and turned by the convergence.
+void expect_on_the_grid(const std::vector<std::vector<std::string>>& rows, const std::vector<std::vector<std::string>>& grid,
+                        const nlohmann::json& start) {
+  ASSERT_EQ(grid.size(), rows.size());
+  const double convergence = start["convergence_deg"].get<double>() * geo::kDegree;
+  for (std::size_t i = 2; i < rows.size(); ++i) {
+    const auto place = [&](std::size_t row) {
+      return Eigen::Vector3d(at(rows, row, "x_m"), at(rows, row, "y_m"), at(rows, row, "z_m"));
+    };
+    const Eigen::Matrix3d C_e_n = geo::C_n_e(geo::geodetic_from_ecef(place(i))).transpose();
+    const Eigen::Vector3d way_n = C_e_n * (place(i) - place(i - 1));
+    const Eigen::Vector2d way(at(grid, i, "easting_m") - at(grid, i - 1, "easting_m"),
+                              at(grid, i, "northing_m") - at(grid, i - 1, "northing_m"));
+    if (way.norm() < 5.0) continue;
+    // Printed to 0.01 mm of 5 m at least; the datums of Switzerland and WGS 84 are inclined by 3e-5 rad to each other.
+    EXPECT_NEAR(way.norm() / way_n.head<2>().norm(), start["combined_scale"].get<double>(), 2e-5) << i;
+    const double turned = std::atan2(way_n.y(), way_n.x()) - std::atan2(way.x(), way.y());
+    EXPECT_NEAR(std::remainder(turned - convergence, 2.0 * geo::kPi), 0.0, 3e-4) << i;  // 2 km to the east turn it by 2e-4
+    EXPECT_NEAR(std::remainder(
+                    at(grid, i, "heading_true_deg") - at(grid, i, "heading_grid_deg") - at(grid, i, "convergence_deg"), 360.0),
+                0.0, 1e-8);
+  }
+}
+
 TEST(Events, OfARunAreWhereTheCameraWas) {
   const record::Trajectory truth = trajectory_of(drive() / "truth.nav");
   write(drive() / "images.csv", images(truth));
   write(drive() / "events.yaml",
-        run_with(
-            fmt::format("  delay_s: {}\n  camera: {{lever_arm_m: [0.4, -0.1, 0.6], boresight_deg: [1, 30, -2]}}\n", kDelay)));
+        run_with(fmt::format("  delay_s: {}\n  camera: {{lever_arm_m: [0.4, -0.1, 0.6], boresight_deg: [1, 30, -2]}}\n"
+                             "output: {{projection: {{crs: EPSG:2056}}, formats: [nav, csv, grid, gpkg]}}\n",
+                             kDelay)));
   const test::TemporaryDirectory folder;
   const fs::path out = folder.path() / "out";
   const Outcome outcome =
@@ -132,6 +157,10 @@ TEST(Events, OfARunAreWhereTheCameraWas) {
   const auto& delay = summary["time_marks"]["delay_found"];
   EXPECT_LT(std::abs(delay["beyond_stated_s"].get<double>()), 4.0 * delay["sd_s"].get<double>());
   EXPECT_EQ(csv_rows(out / "events_opk.csv").size(), rows.size());
+  expect_on_the_grid(rows, csv_rows(out / "events_grid.csv"), summary["projection"]["start"]);
+  EXPECT_EQ(csv_rows(out / "events_exif.csv").size(), rows.size());
+  EXPECT_EQ(csv_rows(out / "trajectory.grid.csv").size(), csv_rows(out / "trajectory.csv").size());
+  EXPECT_TRUE(text_of(out / "trajectory.gpkg").starts_with("SQLite format 3"));
   const std::string geo_txt = text_of(out / "geo.txt");
   EXPECT_EQ(std::ranges::count(geo_txt, '\n'), static_cast<long>(rows.size()));
 
@@ -140,6 +169,7 @@ TEST(Events, OfARunAreWhereTheCameraWas) {
       run(fmt::format("process '{}' --out '{}'", (out / "run.resolved.yaml").string(), again.string()), folder.path()).status,
       0);
   EXPECT_EQ(text_of(out / "events.csv"), text_of(again / "events.csv"));
+  EXPECT_EQ(text_of(out / "trajectory.grid.csv"), text_of(again / "trajectory.grid.csv"));
 }
 
 TEST(Events, ADelayThatIsNotStatedIsFoundAndToldWithTheLineToWrite) {

@@ -4,7 +4,11 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
+#include <cstdio>
+#include <filesystem>
+#include <memory>
 #include <sstream>
 
 #include "coast/geo/earth.hpp"
@@ -147,6 +151,116 @@ TEST(EventFiles, GeoTxtOfOpenDroneMap) {
   std::getline(lines, line);
   EXPECT_EQ(line.substr(0, 6), "b.jpg ");
   EXPECT_FALSE(std::getline(lines, line));
+}
+
+std::shared_ptr<const Projection> lv95() {
+  ProjectionOptions options;
+  options.crs = "EPSG:2056";
+  return std::make_shared<Projection>(options);
+}
+
+// Rays of the image on the grid: the positions of two points along a ray differ on the grid by that ray turned by the angles.
+TEST(EventFiles, OmegaPhiKappaOfAProjectionTurnWithTheGrid) {
+  const Files files;
+  const auto projection = lv95();
+  const record::MarkedState state = exposure("a");
+  write_events_opk(files.path("opk.csv"), {state}, projection.get());
+  const Table table(files.get("opk.csv"));
+  const GridPosition p = projection->at(state.nav.r_eb_e, state.nav.t);
+  EXPECT_NEAR(table.at(0, "easting_m"), p.easting, 1e-5);
+  EXPECT_NEAR(table.at(0, "northing_m"), p.northing, 1e-5);
+  EXPECT_NEAR(table.at(0, "height_m"), p.height, 1e-5);
+  // The top of the image as an azimuth on the grid, from the images of two points 20 m apart.
+  const Eigen::Vector3d top_e = state.nav.q_b_e * Eigen::Vector3d::UnitX();
+  const GridPosition q = projection->at(state.nav.r_eb_e + 20.0 * top_e, state.nav.t);
+  const Eigen::Vector3d top = ray_enu(table.at(0, "omega_deg") * kRadians, table.at(0, "phi_deg") * kRadians,
+                                      table.at(0, "kappa_deg") * kRadians, Eigen::Vector3d::UnitY());
+  // The plumb lines of both ellipsoids differ by 3e-5 rad, and the ray climbs by a quarter of its length.
+  EXPECT_NEAR(std::atan2(top.x(), top.y()), std::atan2(q.easting - p.easting, q.northing - p.northing), 1e-5);
+  const double convergence = projection->convergence(state.nav.r_eb_e, state.nav.t);
+  EXPECT_GT(std::abs(convergence), 0.01);  // 0.6 deg: seen above
+  // sigma^2 along grid north: c^2 v_nn + 2 c s v_ne + s^2 v_ee
+  const double c = std::cos(convergence), s = std::sin(convergence);
+  EXPECT_NEAR(table.at(0, "sd_northing_m"), std::sqrt(c * c * 1e-4 + 2.0 * c * s * 1e-4 + s * s * 4e-4), 1e-6);
+}
+
+TEST(EventFiles, GridTableHasBothHeadings) {
+  const Files files;
+  const auto projection = lv95();
+  write_events_grid(files.path("grid.csv"), {exposure("a"), exposure("b")}, *projection);
+  const Table table(files.get("grid.csv"));
+  ASSERT_EQ(table.rows.size(), 3U);
+  EXPECT_NEAR(table.at(1, "heading_true_deg"), 240.0, 1e-8);
+  EXPECT_NEAR(table.at(1, "heading_grid_deg"), 240.0 - table.at(1, "convergence_deg"), 1e-8);
+  write_events_grid(files.path("none.csv"), {}, *projection);
+  EXPECT_EQ(Table(files.get("none.csv")).rows.size(), 1U);
+}
+
+TEST(EventFiles, TagsOfExif) {
+  const Files files;
+  record::MarkedState west = exposure("west.jpg");
+  const geo::Geodetic p{-33.5 * kRadians, -70.25 * kRadians, -12.5};
+  west.nav.r_eb_e = geo::ecef_from_geodetic(p);
+  // Looks ahead to the east: the nose of its axes is up.
+  west.nav.q_b_e = Eigen::Quaterniond(geo::C_n_e(p) * geo::dcm_from_euler({0.0, 90.0 * kRadians, 90.0 * kRadians}));
+  write_events_exif(files.path("exif.csv"), {exposure("DJI_0012.JPG"), exposure("13"), west}, nullptr, 0.0);
+  const Table table(files.get("exif.csv"));
+  ASSERT_EQ(table.rows.size(), 3U);
+  EXPECT_EQ(table.rows[0][0], "SourceFile");
+  EXPECT_EQ(table.rows[1][0], "DJI_0012.JPG");
+  EXPECT_NEAR(table.at(0, "GPSLatitude"), 46.52, 1e-9);
+  EXPECT_EQ(table.rows[1][2], "N");
+  EXPECT_NEAR(table.at(0, "GPSImgDirection"), 240.0, 2.0);  // rolled by 2 deg
+  EXPECT_NEAR(table.at(1, "GPSLatitude"), 33.5, 1e-9);
+  EXPECT_EQ(table.rows[2][2], "S");
+  EXPECT_EQ(table.rows[2][4], "W");
+  EXPECT_NEAR(table.at(1, "GPSAltitude"), 12.5, 1e-3);
+  EXPECT_EQ(table.at(1, "GPSAltitudeRef"), 1.0);
+  EXPECT_NEAR(table.at(1, "GPSImgDirection"), 90.0, 1e-3);
+}
+
+/// A JPEG of one grey pixel.
+std::string pixel() {
+  const auto bytes = std::to_array<unsigned char>(
+      {0xff, 0xd8, 0xff, 0xdb, 0x00, 0x43, 0x00, 3,    2,    2,    2,    2,    2,    3,    2,    2,    2,    3,
+       3,    3,    3,    4,    6,    4,    4,    4,    4,    4,    8,    6,    6,    5,    6,    9,    8,    10,
+       10,   9,    8,    9,    9,    10,   12,   15,   12,   10,   11,   14,   11,   9,    9,    13,   17,   13,
+       14,   15,   16,   16,   17,   16,   10,   12,   18,   19,   18,   16,   19,   15,   16,   16,   16,   0xff,
+       0xc9, 0x00, 0x0b, 0x08, 0x00, 0x01, 0x00, 0x01, 0x01, 0x01, 0x11, 0,    0xff, 0xcc, 0x00, 0x06, 0x00, 0x10,
+       0x10, 0x05, 0xff, 0xda, 0x00, 0x08, 0x01, 0x01, 0x00, 0x00, 0x3f, 0x00, 0xd2, 0xcf, 0x20, 0xff, 0xd9});
+  return {bytes.begin(), bytes.end()};
+}
+
+TEST(EventFiles, ExiftoolWritesTheTagsIntoImages) {
+  if (!std::filesystem::exists("/usr/bin/exiftool")) GTEST_SKIP() << "no exiftool (libimage-exiftool-perl)";
+  const Files files;
+  files.put("DJI_0012.JPG", pixel());
+  write_events_exif(files.path("exif.csv"), {exposure("DJI_0012.JPG")}, nullptr, 48.0);
+  const auto run = [&](const std::string& command) {
+    const std::string whole = "cd '" + files.path("").string() + "' && " + command + " 2>&1";
+    const std::unique_ptr<FILE, int (*)(FILE*)> pipe(popen(whole.c_str(), "r"), &pclose);
+    std::string text;
+    std::array<char, 512> block{};
+    while (const std::size_t n = std::fread(block.data(), 1, block.size(), pipe.get())) text.append(block.data(), n);
+    return text;
+  };
+  const std::string written = run("exiftool -overwrite_original -csv=exif.csv DJI_0012.JPG");
+  EXPECT_NE(written.find("1 image files updated"), std::string::npos) << written;
+  const std::string told = run(
+      "exiftool -n -s3 -p '$EXIF:GPSLatitude $EXIF:GPSLatitudeRef $EXIF:GPSLongitude $EXIF:GPSLongitudeRef $EXIF:GPSAltitude "
+      "$EXIF:GPSAltitudeRef $EXIF:GPSImgDirectionRef $EXIF:GPSDateStamp $EXIF:GPSTimeStamp' DJI_0012.JPG");
+  double latitude = 0.0, longitude = 0.0, altitude = 0.0, second = 0.0;
+  int below = -1, year = 0, month = 0, day = 0, hour = 0, minute = 0;
+  ASSERT_EQ(std::sscanf(told.c_str(), "%lf N %lf E %lf %d T %d:%d:%d %d:%d:%lf", &latitude, &longitude, &altitude, &below,
+                        &year, &month, &day, &hour, &minute, &second),
+            10)
+      << told;
+  EXPECT_NEAR(latitude, 46.52, 1e-8);
+  EXPECT_NEAR(longitude, 6.57, 1e-8);
+  EXPECT_NEAR(altitude, 464.345, 1e-3);
+  EXPECT_EQ(below, 0);
+  EXPECT_EQ(year * 10000 + month * 100 + day, 20250708);
+  EXPECT_NEAR(hour * 3600.0 + minute * 60.0 + second, 243276.123 - 2 * 86400.0 - 18.0, 1e-2);
 }
 
 }  // namespace

@@ -26,7 +26,7 @@ std::vector<std::string> convert_all(const Files& files, std::string_view format
   for (const RecordingPart& part : recording_format(format).parts) {
     if (!part.present(contents)) continue;
     written.push_back("log." + std::string(part.extension));
-    part.write(files.path(written.back()), contents);
+    part.write(files.path(written.back()), contents, nullptr);
   }
   return written;
 }

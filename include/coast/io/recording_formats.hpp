@@ -6,15 +6,17 @@
 #include <vector>
 
 #include "coast/io/contents.hpp"
+#include "coast/io/projection.hpp"
 
 namespace coast::io {
 
 /// One file of a format.
 struct RecordingPart {
-  std::string_view extension;                                        ///< in place of that of the output's name
-  std::string_view what;                                             ///< "observations"
-  bool (*present)(const FileContents&);                              ///< whether there is something to write
-  void (*write)(const std::filesystem::path&, const FileContents&);  ///< @throws OutputError
+  std::string_view extension;            ///< in place of that of the output's name
+  std::string_view what;                 ///< "observations"
+  bool (*present)(const FileContents&);  ///< whether there is something to write
+  /// @param projection  not null for formats of a map  @throws OutputError
+  void (*write)(const std::filesystem::path&, const FileContents&, const Projection* projection);
 };
 
 struct RecordingFormat {

@@ -21,6 +21,8 @@
 
 namespace coast::io {
 
+class Projection;
+
 /// A file that appears complete or not at all. If the target exists and is not a regular file (a pipe, a device), it is written
 /// directly. In a results folder (results_folder.hpp) only files that coast wrote are replaced.
 class AtomicFile {
@@ -68,16 +70,20 @@ struct WriterOptions {
   std::optional<double> geoid_height_m;  ///< height of the geoid above the height reference of the trajectory, m
   double min_step_m = 1.0;               ///< least distance between points of lines on maps: kml, gpx, geojson
   bool covariance = true;                ///< whether epochs have one; where they have none, none is written
+  bool attitude = true;                  ///< likewise
+  std::shared_ptr<const Projection> projection = nullptr;  ///< for formats with coordinates of a map
 };
 
 /// A file format of trajectories that coast writes.
 struct TrajectoryFormat {
-  std::string_view name;            ///< as in `output.formats`, and the extension
+  std::string_view name;            ///< as in `output.formats`
   std::string_view description;     ///< one line for the help page
+  std::string_view extension = {};  ///< of its file; empty: the name
   std::string_view companion = {};  ///< extension of a second file beside it; empty: none
   bool velocity = false;            ///< whether it contains velocities
   bool attitude = false;            ///< whether it contains attitudes
   bool covariance = false;          ///< whether it makes no sense without covariances
+  bool projected = false;           ///< whether it needs a projection
   std::function<std::unique_ptr<TrajectoryWriter>(const std::filesystem::path&, const WriterOptions&)> make = {};
 };
 
@@ -86,6 +92,8 @@ struct TrajectoryFormat {
 [[nodiscard]] const std::vector<TrajectoryFormat>& trajectory_formats();
 /// @throws std::invalid_argument  no such format
 [[nodiscard]] const TrajectoryFormat& trajectory_format(std::string_view name);
+/// "trajectory.nav": the name of a file of a format.
+[[nodiscard]] std::string file_of(std::string_view stem, const TrajectoryFormat& format);
 /// The second file of a format: the same name with the other extension.
 [[nodiscard]] std::filesystem::path companion_of(const std::filesystem::path& file, std::string_view companion);
 
@@ -99,6 +107,17 @@ void write_imu_csv(const std::filesystem::path& path, const record::ImuRecording
 /// GNSS fixes as CSV with the default header, times with their week; velocities and numbers of satellites if every fix
 /// has them. Correlations between components are left out.
 void write_gnss_csv(const std::filesystem::path& path, const record::GnssRecording& gnss);
+/// GNSS fixes as CSV in a projected CRS: week, second of week, easting, northing, height, convergence, standard deviations
+/// along the axes of the grid, quality.
+void write_gnss_grid(const std::filesystem::path& path, const record::GnssRecording& gnss, const Projection& projection);
+/// GNSS fixes as a layer `fixes` of points in a new GeoPackage.
+/// @param projection  of the coordinates; null: WGS 84 with ellipsoidal heights
+void write_gnss_geopackage(const std::filesystem::path& path, const record::GnssRecording& gnss, const Projection* projection);
+/// Adds layers `fixes` and `events` to a GeoPackage that a trajectory was written to: points with time, quality, standard
+/// deviations, and the attitude of a device. An empty list makes a layer without features.
+/// @param states  null: no layer of events
+void add_to_geopackage(const std::filesystem::path& path, const std::vector<record::GnssFix>& fixes,
+                       const std::vector<record::MarkedState>* states, const Projection* projection);
 /// Time marks as CSV: gps_week, sow_s, sd_s (empty: not stated), channel, edge, count, id.
 void write_time_marks_csv(const std::filesystem::path& path, const record::TimeMarkRecording& marks);
 /// A bag of ROS 2 as MCAP: the IMU as sensor_msgs/msg/Imu on /imu, mean rates and specific forces over each interval in the

@@ -2,6 +2,7 @@
 // RINEX of rover and base -> fixed carrier-phase positions.
 
 #include <filesystem>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -9,6 +10,7 @@
 #include "coast/carrier/base_position.hpp"
 #include "coast/carrier/ppk.hpp"
 #include "coast/config/node.hpp"
+#include "coast/io/projection.hpp"
 #include "coast/jobs/job.hpp"
 #include "coast/record/antenna.hpp"
 #include "coast/record/gnss.hpp"
@@ -28,6 +30,7 @@ struct PpkConfig {
   carrier::BaseAt base_at;
   bool broadcast_ionosphere = true;  ///< for single-point positions
   carrier::PpkOptions options;
+  std::shared_ptr<io::Projection> projection;  ///< of ppk.grid.csv; null: none
 
   [[nodiscard]] static PpkConfig from(const config::Node& map);
 };
@@ -67,8 +70,8 @@ struct PpkResult {
 [[nodiscard]] PpkResult ppk(const PpkConfig& config, PpkRecordings recordings, const Progress& progress);
 
 [[nodiscard]] std::vector<std::string> files_of(const PpkConfig& config);
-/// ppk.pos, ppk.json (docs/schema/ppk_result.schema.json), residuals.csv, ppk.resolved.yaml, report.html; of a moving base
-/// baselines.csv, as the aid `baseline` of a run file reads it.
+/// ppk.pos, with a projection ppk.grid.csv, ppk.json (docs/schema/ppk_result.schema.json), residuals.csv, ppk.resolved.yaml,
+/// report.html; of a moving base baselines.csv, as the aid `baseline` of a run file reads it.
 void write(const PpkConfig& config, const PpkResult& result, const std::filesystem::path& folder);
 [[nodiscard]] std::string told(const PpkConfig& config, const PpkResult& result, const std::filesystem::path& folder);
 /// Summary of the result, sentence by sentence.

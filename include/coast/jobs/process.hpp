@@ -131,6 +131,13 @@ class TrajectoryCurves {
   std::unique_ptr<Curves> curves_;
 };
 
+/// The projection of a run at the start of its mission.
+struct ProjectedStart {
+  io::GridPosition place;
+  double convergence = 0.0;  ///< rad
+  io::GridScale scale;
+};
+
 /// Events of the run file in the delivered trajectory.
 struct EventResults {
   std::vector<record::MarkedState> states;
@@ -167,6 +174,8 @@ struct ProcessResult {
   std::optional<Eigen::Vector3d> lever_arm_sd_m;               ///< if it was estimated
   SensorBiases biases;
   std::optional<EventResults> marked;
+  std::shared_ptr<const io::Projection> projection;  ///< null: none was asked for
+  std::optional<ProjectedStart> projected_start;
   std::vector<Separation> separations;
   std::optional<estimate::NoiseFit> noise_fit;
   std::vector<StateTrack> states;

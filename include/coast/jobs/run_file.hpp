@@ -13,6 +13,7 @@
 #include "coast/io/aid.hpp"
 #include "coast/io/gnss.hpp"
 #include "coast/io/imu.hpp"
+#include "coast/io/projection.hpp"
 #include "coast/io/reference.hpp"
 #include "coast/io/time_marks.hpp"
 #include "coast/jobs/job.hpp"
@@ -49,6 +50,7 @@ struct OutputOptions {
   std::optional<double> rate_hz;                      ///< absent: IMU epochs
   std::vector<std::string> formats{"nav", "csv"};     ///< of the trajectory; forward.nav comes with nav
   Eigen::Vector3d point_b = Eigen::Vector3d::Zero();  ///< from the IMU to the reference point of the trajectory, m
+  std::shared_ptr<io::Projection> projection;         ///< of trajectory.grid.csv, of events and of the page; null: none
 };
 
 /// An aiding sensor of the run: where its samples are, and what they measure.

@@ -15,5 +15,8 @@ namespace coast::io {
 [[nodiscard]] TrajectoryFormat nmea_trajectory();
 [[nodiscard]] TrajectoryFormat tum_trajectory();
 [[nodiscard]] TrajectoryFormat kitti_trajectory();
+[[nodiscard]] TrajectoryFormat grid_trajectory();
+[[nodiscard]] TrajectoryFormat gpkg_trajectory();
+[[nodiscard]] TrajectoryFormat gpkg_trajectory();
 
 }  // namespace coast::io

@@ -103,6 +103,8 @@ void write_trajectory(const ConvertConfig& config, const record::Trajectory& tra
   io::WriterOptions options;
   options.geoid_height_m = config.geoid_height_m;
   options.covariance = false;
+  options.attitude = trajectory.has_attitude;
+  options.projection = config.projection;
   const auto writer = trajectory_format_of(config)->make(folder / config.output.filename(), options);
   study::PassingMotion motion;
   AtRate rate(config.rate_hz);
@@ -114,6 +116,19 @@ void write_trajectory(const ConvertConfig& config, const record::Trajectory& tra
     if (rate.due(nav.t)) writer->write(epoch);
   }
   writer->close();
+}
+
+/// For the first position that is written.
+void choose_projection(io::Projection& projection, bool trajectory, const io::FileContents& contents,
+                       const Progress& progress) {
+  if (trajectory)
+    projection.choose(contents.trajectory->states.front().r_eb_e);
+  else if (contents.gnss && !contents.gnss->fixes.empty())
+    projection.choose(contents.gnss->fixes.front().r_ea_e);
+  const record::Events events = projection.events();
+  tell_warnings(events, progress);
+  for (const record::Event& event : events)
+    if (progress.say && event.severity == record::Event::Severity::kInfo) progress.say(event.text);
 }
 
 }  // namespace
@@ -139,10 +154,15 @@ ConvertConfig read_convert(const std::filesystem::path& input, const std::filesy
 }
 
 io::FileContents convert(const ConvertConfig& config, const Progress& progress) {
+  if (const io::TrajectoryFormat* format = trajectory_format_of(config);
+      format != nullptr && format->projected && !config.projection)
+    throw InputError({"", 0, fmt::format("--to {} without a CRS", config.format), "--crs EPSG:CODE",
+                      "For example the zone of UTM: EPSG:32632."});
   progress("reading", 0.0);
   io::FileContents contents = io::read_contents(config.input, config.gps_week);
   const Selection selected = selection(config, contents);
   if (!selected.trajectory && selected.parts.empty()) refuse(config, contents);
+  if (config.projection) choose_projection(*config.projection, selected.trajectory, contents, progress);
   const auto tell = [&progress](const auto& recording) {
     if (recording) tell_warnings(recording->events, progress);
   };
@@ -170,7 +190,8 @@ std::vector<std::string> files_of(const ConvertConfig& config) {
 void write(const ConvertConfig& config, const io::FileContents& contents, const std::filesystem::path& folder) {
   const Selection selected = selection(config, contents);
   if (selected.trajectory) write_trajectory(config, *contents.trajectory, folder);
-  for (const io::RecordingPart& part : selected.parts) part.write(folder / file_of(config, part), contents);
+  for (const io::RecordingPart& part : selected.parts)
+    part.write(folder / file_of(config, part), contents, config.projection.get());
 }
 
 std::string told(const ConvertConfig& config, const io::FileContents& contents, const std::filesystem::path&) {

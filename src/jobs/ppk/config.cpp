@@ -176,10 +176,13 @@ PpkConfig read_ppk(const Node& root) {
     const Node map = gnss->at("ppk");
     PpkConfig config = PpkConfig::from(map);
     map.refuse_unasked();
+    if (const auto output = root.find("output"))
+      if (const auto projection = output->find("projection")) config.projection = io::Projection::from_node(*projection);
     return config;
   }
   static_cast<void>(root.choice("schema", {"coast.ppk/1"}, 0));
   PpkConfig config = PpkConfig::from(root);
+  if (const auto projection = root.find("projection")) config.projection = io::Projection::from_node(*projection);
   root.refuse_unasked();
   return config;
 }

@@ -125,6 +125,10 @@ PpkResult ppk(const PpkConfig& config, PpkRecordings recordings, const Progress&
   result.fixes = carrier::to_fixes(result.solution, rover.source);
   for (const record::Events& events : {rover.events, base.events, navigation.events, broadcast.events(), result.fixes.events})
     append(events, result.events);
+  if (config.projection && !result.fixes.fixes.empty()) {
+    config.projection->choose(result.fixes.fixes.front().r_ea_e);
+    append(config.projection->events(), result.events);
+  }
   tell_warnings(result.events, progress);
   return result;
 }

@@ -1,5 +1,7 @@
 // Description of a mission before its solution.
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <map>
 
@@ -49,6 +51,47 @@ void describe_mission(const Work& work, ProcessResult& result) {
   if (mission.carrier == nullptr) return;
   result.gnss_epochs =
       static_cast<std::size_t>(std::ranges::count_if(mission.carrier->epochs, [&](const auto& epoch) { return met(epoch.t); }));
+}
+
+namespace {
+
+/// The first position outside of the area for which the CRS was made, and how many there are.
+void tell_fixes_outside(const io::Projection& projection, const std::vector<record::GnssFix>& fixes, ProcessResult& result) {
+  const record::GnssFix* first = nullptr;
+  long outside = 0;
+  for (const record::GnssFix& fix : fixes) {
+    if (projection.covers(fix.r_ea_e)) continue;
+    if (first == nullptr) first = &fix;
+    ++outside;
+  }
+  if (first == nullptr) return;
+  result.events.push_back({record::Event::Severity::kWarning, "outside_area_of_use",
+                           fmt::format("{} of {} fixes are outside the area of use of {}. Is it the right zone?", outside,
+                                       fixes.size(), projection.name()),
+                           first->t, outside});
+}
+
+}  // namespace
+
+void describe_projection(const Work& work, ProcessResult& result) {
+  const std::shared_ptr<io::Projection>& projection = work.config.output.projection;
+  if (!projection) return;
+  const record::NavState& start = work.mission.start().nav;
+  projection->choose(start.r_eb_e);
+  for (const record::Event& event : projection->events()) {
+    if (event.kind != "outside_area_of_use") result.events.push_back(event);
+    if (event.severity == record::Event::Severity::kInfo && work.progress.say) work.progress.say(event.text);
+  }
+  tell_fixes_outside(*projection, work.mission.mission().gnss.fixes, result);
+  for (const record::Event& event : result.events)
+    if ((event.kind == "outside_area_of_use" || event.kind == "projection_grid") && work.progress.warn)
+      work.progress.warn(event.text);
+  result.projection = projection;
+  result.projected_start = ProjectedStart{projection->at(start.r_eb_e, start.t), projection->convergence(start.r_eb_e, start.t),
+                                          projection->scale(start.r_eb_e, start.t)};
+  work.config.root.section("output")
+      .section("projection")
+      .note_estimated("transformation", fmt::format("\"{}\"", projection->operation()));
 }
 
 }  // namespace coast::jobs

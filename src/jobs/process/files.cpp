@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "coast/io/event_writers.hpp"
 #include "coast/io/results_folder.hpp"
 #include "coast/io/writers.hpp"
@@ -16,7 +18,8 @@ std::vector<std::string> files_of(const RunConfig& config) {
   std::vector<std::string> files = trajectory_files(config.output);
   for (const char* file : {"run.resolved.yaml", "summary.json", "innovations.csv", "report.json", "report.html"})
     files.emplace_back(file);
-  if (config.events) files.insert(files.end(), {"events.csv", "events_opk.csv", "geo.txt"});
+  if (config.events) files.insert(files.end(), {"events.csv", "events_opk.csv", "events_exif.csv", "geo.txt"});
+  if (config.events && config.output.projection) files.emplace_back("events_grid.csv");
   return files;
 }
 
@@ -40,6 +43,20 @@ record::EpochSink to(const Writers& writers) {
 
 }  // namespace
 
+namespace {
+
+void write_events(const RunConfig& config, const std::vector<record::MarkedState>& states,
+                  const std::filesystem::path& folder) {
+  const io::Projection* projection = config.output.projection.get();
+  io::write_events_csv(folder / "events.csv", states);
+  io::write_events_opk(folder / "events_opk.csv", states, projection);
+  io::write_events_exif(folder / "events_exif.csv", states, projection, geoid_height(config).value_or(0.0));
+  io::write_odm_geo(folder / "geo.txt", states);
+  if (projection != nullptr) io::write_events_grid(folder / "events_grid.csv", states, *projection);
+}
+
+}  // namespace
+
 struct TrajectoryFiles::Files {
   explicit Files(const OutputOptions& options) : forward(options, to(forward_writers)), delivered(options, to(writers)) {}
   std::filesystem::path folder;
@@ -52,10 +69,11 @@ TrajectoryFiles::TrajectoryFiles(const RunConfig& config, const std::filesystem:
   files_->folder = folder;
   io::WriterOptions options;
   options.geoid_height_m = geoid_height(config);
+  options.projection = config.output.projection;
   for (const std::string& format : config.output.formats) {
     const io::TrajectoryFormat& how = io::trajectory_format(format);
     if (format == "nav") files_->forward_writers.push_back(how.make(folder / "forward.nav", options));
-    files_->writers.push_back(how.make(folder / fmt::format("trajectory.{}", format), options));
+    files_->writers.push_back(how.make(folder / io::file_of("trajectory", how), options));
   }
 }
 
@@ -75,11 +93,10 @@ void TrajectoryFiles::close() {
 void write(const RunConfig& config, const ProcessResult& result, const std::filesystem::path& folder) {
   io::write_text(folder / "run.resolved.yaml", result.resolved);
   io::write_text(folder / "innovations.csv", innovations_csv(result));
-  if (result.marked) {
-    io::write_events_csv(folder / "events.csv", result.marked->states);
-    io::write_events_opk(folder / "events_opk.csv", result.marked->states);
-    io::write_odm_geo(folder / "geo.txt", result.marked->states);
-  }
+  if (result.marked) write_events(config, result.marked->states, folder);
+  if (std::ranges::find(config.output.formats, "gpkg") != config.output.formats.end())
+    io::add_to_geopackage(folder / "trajectory.gpkg", result.fixes, result.marked ? &result.marked->states : nullptr,
+                          config.output.projection.get());
   write_page(make_page({config, result}), folder);
   io::write_text(folder / "summary.json", summary_json(result));
 }

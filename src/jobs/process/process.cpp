@@ -97,6 +97,7 @@ ProcessResult process(const RunConfig& config, Recordings recordings, const Traj
   const Work work{config,   *mission,        recordings.reference, outages_of(config, start, end), knot_sampling(end - start),
                   progress, recordings.marks};
   describe_mission(work, result);
+  describe_projection(work, result);
 
   const study::GapFreeReference gap_free = solve_without_outages(work);
   // They temporarily reverse the recordings, so nothing may run concurrently.

@@ -34,6 +34,9 @@ struct Work {
 [[nodiscard]] ProcessResult what_was_read(const Recordings& recordings);
 /// Properties of the prepared mission: span, start, epochs by quality, fitted noise, adaptations.
 void describe_mission(const Work& work, ProcessResult& result);
+/// The projection of the run file: chosen for the place of the mission, told, and noted in the resolved file.
+/// @throws InputError  no transformation can be used there
+void describe_projection(const Work& work, ProcessResult& result);
 
 // --- solve.cpp
 

@@ -120,6 +120,18 @@ Json time_marks_json(const EventResults& marked) {
   return j;
 }
 
+Json projection_json(const io::Projection& projection, const ProjectedStart& start) {
+  const io::GridColumns& names = projection.columns();
+  Json j{{"crs", projection.crs()},
+         {"name", projection.name()},
+         {"heights", projection.heights()},
+         {"transformation", projection.operation()}};
+  j["start"] = {{names.easting, start.place.easting}, {names.northing, start.place.northing},
+                {names.height, start.place.height},   {"convergence_deg", start.convergence / geo::kDegree},
+                {"point_scale", start.scale.point},   {"combined_scale", start.scale.combined}};
+  return j;
+}
+
 /// @param written  of the trajectory: trajectory.nav and others of that name, forward.nav
 /// @param events   whether the run has events
 Json files_json(const std::vector<std::string>& written, bool events) {
@@ -127,6 +139,7 @@ Json files_json(const std::vector<std::string>& written, bool events) {
   Json j;
   if (!written.empty()) j["trajectory"] = written.front();
   if (has("forward.nav")) j["forward"] = "forward.nav";
+  if (has("trajectory.grid.csv")) j["grid"] = "trajectory.grid.csv";
   if (has("trajectory.csv")) j["covariance"] = "trajectory.csv";
   if (events) j["events"] = "events.csv";
   j["report"] = "report.html";
@@ -210,6 +223,7 @@ std::string summary_json(const ProcessResult& result) {
     j["lever_arm_misclosure"] = {{"estimated_minus_configured_m", array_json(result.lever_arm->difference_m)},
                                  {"sd_m", array_json(result.lever_arm->sd_m)}};
   if (result.marked) j["time_marks"] = time_marks_json(*result.marked);
+  if (result.projection) j["projection"] = projection_json(*result.projection, *result.projected_start);
   if (!result.separations.empty()) j["forward_backward_separation"] = separation_json(result.separations);
   for (const StateTrack& track : result.states)
     if (!track.smoothed.empty())

@@ -7,9 +7,9 @@ namespace coast::jobs {
 std::vector<std::string> trajectory_files(const OutputOptions& options) {
   std::vector<std::string> files;
   for (const std::string& format : options.formats) {
-    files.push_back("trajectory." + format);
-    if (const std::string companion(io::trajectory_format(format).companion); !companion.empty())
-      files.push_back("trajectory." + companion);
+    const io::TrajectoryFormat& how = io::trajectory_format(format);
+    files.push_back(io::file_of("trajectory", how));
+    if (const std::string companion(how.companion); !companion.empty()) files.push_back("trajectory." + companion);
     if (format == "nav") files.emplace_back("forward.nav");
   }
   return files;

@@ -164,6 +164,14 @@ void read_output(const Node& root, RunConfig& run) {
   const auto output = root.find("output");
   if (!output) return;
   if (const auto rate = output->find("rate_hz")) run.output.rate_hz = output->number_within("rate_hz", 0.0, 1e-3, 1e5);
+  if (const auto projection = output->find("projection")) {
+    run.output.projection = io::Projection::from_node(*projection);
+    if (!run.ppk && run.gnss.position.above_mean_sea_level && !run.gnss.position.geoid_height)
+      throw projection->error("a projection of positions whose heights are above mean sea level",
+                              "`gnss: {geoid_height_m: ..}` beside `height: msl`",
+                              "Without it they cannot be told from ellipsoidal heights.");
+    run.output.formats.emplace_back("grid");
+  }
   if (const auto formats = output->find("formats")) {
     std::vector<std::string>& wanted = run.output.formats;
     std::vector<std::string_view> known;
@@ -171,6 +179,8 @@ void read_output(const Node& root, RunConfig& run) {
     wanted.clear();
     for (const Node& item : formats->items()) {
       static_cast<void>(item.choice(known));
+      if (io::trajectory_format(item.text()).projected && !run.output.projection)
+        throw item.error("coordinates of a map without a projection", "`output: {projection: {crs: ..}}` beside it");
       if (std::ranges::find(wanted, item.text()) == wanted.end()) wanted.push_back(item.text());
     }
     if (wanted.empty()) throw formats->error("no format", fmt::format("at least one of {}", fmt::join(known, ", ")));

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <map>
 
+#include "coast/geo/units.hpp"
 #include "process/page/curves.hpp"
 #include "process/page/parts.hpp"
 
@@ -65,6 +66,43 @@ void add_ends(const report::Series& track, report::Plot& plot) {
   if (!closed) plot.marks.push_back({track.x.back(), track.y.back(), "end"});
 }
 
+/// Coordinates on the page are of single precision: less a round number they keep their millimetres.
+double round_part(double coordinate) {
+  constexpr double kRound = 1e4;
+  return kRound * std::floor(coordinate / kRound);
+}
+
+/// East and north of the local frame to the coordinates of the projection, whose lines then are those of the plot.
+void project_plan(const ProcessPage& page, report::Panel& panel) {
+  const io::Projection& projection = *page.result.projection;
+  const ProjectedStart& start = *page.result.projected_start;
+  const double east = round_part(start.place.easting), north = round_part(start.place.northing);
+  const geo::LocalFrame& local = page.result.curves->curves().local;
+  const auto move = [&](double& x, double& y) {
+    const io::GridPosition p = projection.at(local.to_ecef({y, x, 0.0}), page.result.start);
+    x = p.easting - east;
+    y = p.northing - north;
+  };
+  report::Plot& plot = panel.plot();
+  const auto move_series = [&](report::Series& series) {
+    for (std::size_t i = 0; i < series.x.size(); ++i) move(series.x[i], series.y[i]);
+  };
+  for (report::Line& line : plot.lines) move_series(line.series);
+  for (report::Points& points : plot.points) move_series(points.series);
+  for (report::Mark& mark : plot.marks) move(mark.x, mark.y);
+  const auto name_axis = [](const std::string& column, double less, report::Axis& axis) {
+    const std::size_t unit = column.find('_');
+    axis.label = fmt::format("{} less {:.0f}", column.substr(0, unit), less);
+    axis.unit = column.substr(unit + 1);
+  };
+  name_axis(projection.columns().easting, east, plot.x);
+  name_axis(projection.columns().northing, north, plot.y);
+  panel.caption += fmt::format(
+      " Lines are those of {}; grid north is up, {:+.4f} deg from true north at the start (convergence), where a metre on the "
+      "ground is {:.6f} m on the grid (combined scale factor).",
+      projection.name(), start.convergence / geo::kDegree, start.scale.combined);
+}
+
 report::Panel plan(const ProcessPage& page) {
   report::Panel panel = report::plan_panel(
       "plan", "Plan view",
@@ -75,6 +113,9 @@ report::Panel plan(const ProcessPage& page) {
   add_fixes(page, plot);
   add_ends(track, plot);
   report::add_line(plot, delivered(page), track, delivered_tone(page)).width_px = 1.6;
+  // A plan with axes to the south and west would be turned.
+  if (const auto& projection = page.result.projection; projection && projection->columns().northing.starts_with("northing"))
+    project_plan(page, panel);
   return panel;
 }
 

@@ -390,6 +390,27 @@ export function drawScaleBar(f: Frame): void {
   label(f, text, left + length / 2, bottom - 3 * f.dpr);
 }
 
+/** An arrow to the top, at the upper right of a plan. */
+export function drawNorthArrow(f: Frame, name: string): void {
+  const { ctx } = f;
+  const x = f.left + f.width - 26 * f.dpr;
+  const top = f.top + 14 * f.dpr;
+  const length = 30 * f.dpr;
+  const half = 6 * f.dpr;
+  ctx.fillStyle = colour("--ink");
+  ctx.beginPath();
+  ctx.moveTo(x, top);
+  ctx.lineTo(x - half, top + length);
+  ctx.lineTo(x, top + length - half);
+  ctx.lineTo(x + half, top + length);
+  ctx.closePath();
+  ctx.fill();
+  ctx.font = `600 ${scaledFont(f)}`;
+  ctx.textAlign = "center";
+  ctx.textBaseline = "top";
+  label(f, name, x, top + length + 3 * f.dpr);
+}
+
 /** All bands, then highlights, dots, and lines: nothing wide lies over something narrow, and dense dots hide no line. */
 export function drawCurves(f: Frame, curves: Curve[]): void {
   for (const c of curves) if (c.series.band) drawBand(f, c.series.band, c.series.sorted, c.tone);

@@ -2,7 +2,7 @@
 import uPlot from "uplot";
 import { xAxis, yAxis } from "./axes";
 import type { Content } from "./decode";
-import { clipped, drawBars, drawBounds, drawBoxes, drawCurves, drawIntervalLabels, drawIntervals, drawMarks, drawScaleBar, drawSky, SKY_RANGE, type Frame } from "./draw";
+import { clipped, drawBars, drawBounds, drawBoxes, drawCurves, drawIntervalLabels, drawIntervals, drawMarks, drawNorthArrow, drawScaleBar, drawSky, SKY_RANGE, type Frame } from "./draw";
 import { equalAspect, padded, shifted, withBounds, xExtent, yExtent, zoomed } from "./extent";
 import { TIME, type Hub, type Member } from "./hub";
 import type { Range, StoredPlot } from "./model";
@@ -247,6 +247,7 @@ export class PlotView implements Member {
       drawIntervalLabels(f, stored.intervals ?? []);
       drawMarks(f, stored.marks ?? []);
       if (this.isPlan && this.stored.x.unit === "m") drawScaleBar(f);
+      if (stored.equal_aspect) drawNorthArrow(f, stored.y.label === "north" ? "N" : "grid N");
     });
     Object.assign(this.host.dataset, { xMin: f.x.min, xMax: f.x.max, yMin: f.y.min, yMax: f.y.max, drawMs: performance.now() - began });
   }
