@@ -75,7 +75,7 @@ class Completions(unittest.TestCase):
             self.assertEqual(set(bash("coast", name, "--")), options(name) | {"--help"}, name)
 
     def test_bash_offers_what_may_stand_behind_an_option(self):
-        self.assertEqual(bash("coast", "convert", "a.nav", "b", "--to", "g"), ["gpx", "geojson"])
+        self.assertEqual(bash("coast", "convert", "a.nav", "b", "--to", "g"), ["gpx", "geojson", "grid", "gpkg"])
         self.assertEqual(bash("coast", "process", "--threads", ""), [])
         self.assertIn("/usr", bash("coast", "process", "--out", "/us"))
 

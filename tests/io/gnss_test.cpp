@@ -145,7 +145,7 @@ TEST(RtklibPos, GeodeticHeightsAreAboveTheSea) {
 }
 
 std::string one_fix(const std::string& sigmas) {
-  return std::string(kLlhHeader) + "2009/04/07 00:00:30.000 35.0 139.0 66.0 1 7 " + sigmas + " 0 0\n";
+  return fmt::format("{}2009/04/07 00:00:30.000 35.0 139.0 66.0 1 7 {} 0 0\n", kLlhHeader, sigmas);
 }
 
 TEST(RtklibPos, ZeroSigmaIsRefusedUnlessStated) {

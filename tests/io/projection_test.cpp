@@ -284,15 +284,13 @@ TEST(Projection, EpochsMoveFramesOnMovingPlates) {
 
 // ITRF2020 and ITRF2014 differ by millimetres; PROJ knows no direct way from the former to national grids.
 TEST(Projection, FramesWithoutADirectWayAreReachedThroughOthers) {
-  for (const char* crs : {"EPSG:25832", "EPSG:25832+5773"}) {
-    Projection by_2020(options(crs, "EPSG:9989")), by_2014(options(crs, "EPSG:7912"));
-    const Eigen::Vector3d r_e = place(48.1, 11.5, 500.0);
-    by_2020.choose(r_e);
-    by_2014.choose(r_e);
-    const GridPosition a = by_2020.at(r_e, kTime), b = by_2014.at(r_e, kTime);
-    EXPECT_LT(std::hypot(a.easting - b.easting, a.northing - b.northing), 0.01);
-    EXPECT_NEAR(a.height, b.height, 0.01);
-  }
+  Projection by_2020(options("EPSG:25832", "EPSG:9989")), by_2014(options("EPSG:25832", "EPSG:7912"));
+  const Eigen::Vector3d r_e = place(48.1, 11.5, 500.0);
+  by_2020.choose(r_e);
+  by_2014.choose(r_e);
+  const GridPosition a = by_2020.at(r_e, kTime), b = by_2014.at(r_e, kTime);
+  EXPECT_LT(std::hypot(a.easting - b.easting, a.northing - b.northing), 0.01);
+  EXPECT_NEAR(a.height, b.height, 0.01);
 }
 
 TEST(Projection, PlacesOutsideTheAreaOfUseAreTold) {

@@ -13,26 +13,18 @@ namespace coast::io {
 
 namespace {
 
-/// How widely PROJ looks for transformations, the strictest first.
-struct Search {
-  PROJ_SPATIAL_CRITERION area;
-  PROJ_INTERMEDIATE_CRS_USE intermediate;
-};
-constexpr Search kSearches[] = {
-    {PROJ_SPATIAL_CRITERION_STRICT_CONTAINMENT, PROJ_INTERMEDIATE_CRS_USE_IF_NO_DIRECT_TRANSFORMATION},
-    {PROJ_SPATIAL_CRITERION_PARTIAL_INTERSECTION, PROJ_INTERMEDIATE_CRS_USE_IF_NO_DIRECT_TRANSFORMATION},
-    {PROJ_SPATIAL_CRITERION_PARTIAL_INTERSECTION, PROJ_INTERMEDIATE_CRS_USE_ALWAYS}};
+/// Within which area PROJ looks for transformations, the strictest first: within that of both CRS, or of either.
+constexpr std::array kAreas{PROJ_SPATIAL_CRITERION_STRICT_CONTAINMENT, PROJ_SPATIAL_CRITERION_PARTIAL_INTERSECTION};
 
 // Frames of global networks, and that of Europe, from which PROJ does not find the way to every national one by itself:
 // ITRF2014, ETRS89.
 constexpr std::array kFrames{"EPSG:7912", "EPSG:4937"};
 
-ProjList operations_between(const ProjContext& context, const PJ* from, const PJ* to, const Search& search,
+ProjList operations_between(const ProjContext& context, const PJ* from, const PJ* to, PROJ_SPATIAL_CRITERION area,
                             const std::optional<geo::Geodetic>& place) {
   PJ_CONTEXT* c = context.get();
   const ProjFactory factory(proj_create_operation_factory_context(c, nullptr));
-  proj_operation_factory_context_set_spatial_criterion(c, factory.get(), search.area);
-  proj_operation_factory_context_set_allow_use_intermediate_crs(c, factory.get(), search.intermediate);
+  proj_operation_factory_context_set_spatial_criterion(c, factory.get(), area);
   proj_operation_factory_context_set_grid_availability_use(c, factory.get(), PROJ_GRID_AVAILABILITY_IGNORED);
   if (place) {
     constexpr double kAround = 1e-3;  // deg: areas are wanted that contain the place
@@ -85,9 +77,9 @@ CoordinateOperation direct_operation(ProjContext& context, const PJ* from, const
                                      const std::optional<geo::Geodetic>& place) {
   CoordinateOperation best;
   std::vector<std::string> missing;  // of the first search that knows some: wider ones bring grids of other places
-  for (const Search& search : kSearches) {
+  for (const PROJ_SPATIAL_CRITERION area : kAreas) {
     if (!best.steps.empty()) break;
-    const ProjList list = operations_between(context, from, to, search, place);
+    const ProjList list = operations_between(context, from, to, area, place);
     take_first(context, list.get(), best);
     if (missing.empty()) missing = best.missing;
   }
