@@ -149,10 +149,11 @@ void PreparedMission::take_antenna(AntennaChoice shown, const AntennaFit& found)
 }
 
 // The effect of the offset is velocity times time, valid for milliseconds, and other comparisons with fixes need correct
-// values: time offset and lever arm are corrected by the estimates until these vanish. If the steps grow there is no
-// convergence: the values to be estimated then remain as stated.
+// values: time offset and lever arm are corrected by the estimates until these vanish. Begun 0.4 s from the offset, five steps
+// left 40 ms and 50 mm of run l of rc-rover-mimu. If the steps grow there is no convergence: the values to be estimated then
+// remain as stated.
 void PreparedMission::refine_antenna(const Progress& progress) {
-  constexpr int kRounds = 5;
+  constexpr int kRounds = 25;
   constexpr double kSettledTime = 5e-4;  // s
   constexpr double kSettledArm = 1e-3;   // m
   constexpr double kSmall = 0.1;         // of a wide prior: below it noise makes steps grow
