@@ -193,7 +193,9 @@ void add_convert(CLI::App& app, std::filesystem::path& input, std::filesystem::p
 
 void add_inspect(CLI::App& app, std::filesystem::path& input, std::optional<int>& gps_week) {
   auto* inspect = app.add_subcommand("inspect", "what is in a file: kind, span, rates, satellites and signals, gaps, damage");
-  inspect->add_option("file", input, "a recording of an IMU or of GNSS, RINEX, a trajectory, or a run file")->required()->type_name(kFile);
+  inspect->add_option("file", input, "a recording of an IMU or of GNSS, RINEX, a trajectory, or a run file")
+      ->required()
+      ->type_name(kFile);
   inspect->add_option("--gps-week", gps_week, "of files with seconds of week only")->check(CLI::Range(1, 9999));
   inspect->footer("Example:\n  coast inspect rover.ubx.gz");
   inspect->callback([&input, &gps_week] { cli::inspect(input, gps_week, {}); });

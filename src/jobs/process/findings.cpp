@@ -1,5 +1,7 @@
 // Findings on the configuration from the solved mission.
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 
