@@ -9,6 +9,7 @@
 #include <random>
 #include <set>
 
+#include "coast/geo/units.hpp"
 #include "coast/parallel.hpp"
 #include "search.hpp"
 
@@ -20,7 +21,7 @@ namespace {
 double draw_t(std::mt19937_64& random, double nu) {
   const auto uniform = [&random] { return (static_cast<double>(random() >> 11U) + 0.5) * 0x1p-53; };
   const double u = uniform();
-  const double angle = 2.0 * 3.14159265358979323846 * uniform();
+  const double angle = 2.0 * geo::kPi * uniform();
   const double square = std::isfinite(nu) ? nu * (std::pow(u, -2.0 / nu) - 1.0) : -2.0 * std::log(u);
   return std::sqrt(square) * std::cos(angle);
 }

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include "coast/geo/units.hpp"
 
 namespace coast::fleet {
 
@@ -16,7 +17,7 @@ constexpr int kFewestShared = 3;    // units that a shared change must touch
 
 /// E min(x^2, c^2) of the standard normal distribution.
 double clipped_variance(double c) {
-  const double density = std::exp(-0.5 * c * c) / std::sqrt(2.0 * 3.14159265358979323846);
+  const double density = std::exp(-0.5 * c * c) / std::sqrt(2.0 * geo::kPi);
   const double beyond = std::erfc(c / std::sqrt(2.0));
   return 1.0 - beyond - 2.0 * c * density + c * c * beyond;
 }

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <limits>
 
+#include "coast/geo/units.hpp"
+
 namespace coast::fleet {
 
 namespace {
@@ -39,10 +41,9 @@ double incomplete_beta(double a, double b, double x) {
 
 /// Of the density of t.
 double log_constant(double inverse) {
-  constexpr double kPi = 3.14159265358979323846;
-  if (inverse == 0.0) return -0.5 * std::log(2.0 * kPi);
+  if (inverse == 0.0) return -0.5 * std::log(2.0 * geo::kPi);
   const double nu = 1.0 / inverse;
-  return std::lgamma(0.5 * (nu + 1.0)) - std::lgamma(0.5 * nu) - 0.5 * std::log(nu * kPi);
+  return std::lgamma(0.5 * (nu + 1.0)) - std::lgamma(0.5 * nu) - 0.5 * std::log(nu * geo::kPi);
 }
 
 /// P(|T| > z), and what a value of which only this is known adds to n - sum w v^2 / s^2 = 0, the equation of the scale.
