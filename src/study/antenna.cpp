@@ -40,6 +40,10 @@ estimate::FilterState PreparedMission::antenna_as_stated(estimate::FilterState s
                                                          const estimate::StateLayout& layout) const {
   if (layout.time_offset()) state.x(*layout.time_offset()) = setup_.time_offset_s - mission_->time_offset_s;
   if (layout.lever_arm()) state.x.segment<3>(*layout.lever_arm()) = setup_.lever_arm_b - mission_->lever_arm_b;
+  if (setup_.start) return state;
+  // A start from fixes keeps the antenna where they are.
+  if (layout.time_offset()) state.nav.r_eb_e += state.x(*layout.time_offset()) * state.nav.v_eb_e;
+  if (layout.lever_arm()) state.nav.r_eb_e -= state.nav.q_b_e * state.x.segment<3>(*layout.lever_arm());
   return state;
 }
 
