@@ -143,7 +143,7 @@ Eigen::Vector3d Projection::State::project(const Eigen::Vector3d& r_e, geo::GpsT
   const geo::Geodetic p = geo::geodetic_from_ecef(r_e);
   const double year = options.epoch ? *options.epoch : decimal_year(t);
   const PJ_COORD out = operation.apply(proj_coord(p.longitude / geo::kDegree, p.latitude / geo::kDegree, p.height, year));
-  const Eigen::Vector3d grid(out.v[target.easting.index], out.v[target.northing.index], out.v[target.height.index]);
+  Eigen::Vector3d grid(out.v[target.easting.index], out.v[target.northing.index], out.v[target.height.index]);
   if (!grid.allFinite() || std::abs(grid.x()) >= HUGE_VAL)
     throw NumericalError("projection", geo::to_string(t),
                          fmt::format("the position {:.5f}, {:.5f} deg has no coordinates in {}: {}. It is outside of the "
