@@ -94,7 +94,7 @@ was, now = figures(before), figures(after)
 print(f"{'':30}   before    after")
 for name in was:
     print(f"{name:30} {was[name]:8.3f} {now[name]:8.3f}")
-assert now["pitch, deg"] < 0.5 * was["pitch, deg"] and now["drift in 20 s, median, m"] < 0.6 * was["drift in 20 s, median, m"]
+assert now["position, mm"] < 0.2 * was["position, mm"] and now["pitch, deg"] < was["pitch, deg"] and now["drift in 20 s, median, m"] < 0.6 * was["drift in 20 s, median, m"]
 
 # %%
 fig, axis = pyplot.subplots()

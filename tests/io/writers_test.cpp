@@ -9,6 +9,7 @@
 
 #include "../../src/io/text_buffer.hpp"
 #include "coast/geo/earth.hpp"
+#include "coast/io/projection.hpp"
 #include "files.hpp"
 
 namespace coast::io {
@@ -210,7 +211,12 @@ TEST(Pos, SaysWhatIsKnownOfGnssAndWhereThereWasNone) {
 TEST(Writers, EveryFormatByName) {
   const Files files;
   for (const TrajectoryFormat& format : trajectory_formats()) {
-    const auto writer = format.make(files.path(fmt::format("trajectory.{}", format.name)), {});
+    WriterOptions options;
+    if (format.projected) {
+      EXPECT_THROW(static_cast<void>(format.make(files.path("unprojected"), options)), std::invalid_argument);
+      options.projection = std::make_shared<Projection>(ProjectionOptions{"EPSG:32631"});
+    }
+    const auto writer = format.make(files.path(fmt::format("trajectory.{}", format.name)), options);
     record::TrajectoryEpoch epoch;
     epoch.nav.r_eb_e = geo::ecef_from_geodetic({0.7, 0.1, 0.0});
     epoch.nav.t = geo::GpsTime::from_week(2300, 10.0);

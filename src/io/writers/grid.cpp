@@ -3,6 +3,8 @@
 
 #include <fmt/format.h>
 
+#include <stdexcept>
+
 #include "../grid_columns.hpp"
 #include "../state_columns.hpp"
 #include "coast/geo/units.hpp"
@@ -51,6 +53,7 @@ TrajectoryFormat grid_trajectory() {
   format.extension = "grid.csv";
   format.projected = true;
   format.make = [](const std::filesystem::path& file, const WriterOptions& options) {
+    if (!options.projection) throw std::invalid_argument("the format grid needs a projection");
     return std::make_unique<GridWriter>(file, options);
   };
   return format;
