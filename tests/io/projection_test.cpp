@@ -43,7 +43,7 @@ ProjectionOptions options(const std::string& crs, const std::string& from = Proj
   return stated;
 }
 
-std::string refusal(const ProjectionOptions& stated) {
+std::string projection_refusal(const ProjectionOptions& stated) {
   try {
     const Projection projection(stated);
   } catch (const InputError& error) {
@@ -185,27 +185,28 @@ TEST(Projection, UnitsAndDirectionsAreInTheNamesOfColumns) {
 }
 
 TEST(Projection, WhatCannotBeUsedIsRefused) {
-  EXPECT_NE(refusal(options("EPSG:99999")).find("crs not found"), std::string::npos) << refusal(options("EPSG:99999"));
-  EXPECT_NE(refusal(options("foo")).find("no code and no PROJ string"), std::string::npos);
-  EXPECT_NE(refusal(options("")).find("no code"), std::string::npos);
-  EXPECT_NE(refusal(options("EPSG:4326")).find("a geographic CRS (WGS 84)"), std::string::npos);
-  EXPECT_NE(refusal(options("EPSG:4978")).find("a geocentric CRS"), std::string::npos);
-  EXPECT_NE(refusal(options("EPSG:5773")).find("a vertical CRS alone"), std::string::npos);
-  EXPECT_NE(refusal(options("EPSG:4326+5773")).find("a geographic CRS"), std::string::npos);
-  EXPECT_NE(refusal(options("+proj=bogus")).find("+proj=bogus"), std::string::npos);
-  EXPECT_NE(refusal(options("+proj=tmerc +lon_0=9 +ellps=bessel")).find("without datum"), std::string::npos);
-  EXPECT_NE(refusal(options("EPSG:25832", "EPSG:5773")).find("is not geographic"), std::string::npos);
-  EXPECT_NE(refusal(options("EPSG:25832", "EPSG:4978")).find("is not geographic"), std::string::npos);
-  EXPECT_NE(refusal(options("EPSG:25832", "nowhere")).find("no known code"), std::string::npos);
-  EXPECT_NE(refusal(options("EPSG:27572", "EPSG:4807")).find("not in degrees"), std::string::npos);
+  EXPECT_NE(projection_refusal(options("EPSG:99999")).find("crs not found"), std::string::npos)
+      << projection_refusal(options("EPSG:99999"));
+  EXPECT_NE(projection_refusal(options("foo")).find("no code and no PROJ string"), std::string::npos);
+  EXPECT_NE(projection_refusal(options("")).find("no code"), std::string::npos);
+  EXPECT_NE(projection_refusal(options("EPSG:4326")).find("a geographic CRS (WGS 84)"), std::string::npos);
+  EXPECT_NE(projection_refusal(options("EPSG:4978")).find("a geocentric CRS"), std::string::npos);
+  EXPECT_NE(projection_refusal(options("EPSG:5773")).find("a vertical CRS alone"), std::string::npos);
+  EXPECT_NE(projection_refusal(options("EPSG:4326+5773")).find("a geographic CRS"), std::string::npos);
+  EXPECT_NE(projection_refusal(options("+proj=bogus")).find("+proj=bogus"), std::string::npos);
+  EXPECT_NE(projection_refusal(options("+proj=tmerc +lon_0=9 +ellps=bessel")).find("without datum"), std::string::npos);
+  EXPECT_NE(projection_refusal(options("EPSG:25832", "EPSG:5773")).find("is not geographic"), std::string::npos);
+  EXPECT_NE(projection_refusal(options("EPSG:25832", "EPSG:4978")).find("is not geographic"), std::string::npos);
+  EXPECT_NE(projection_refusal(options("EPSG:25832", "nowhere")).find("no known code"), std::string::npos);
+  EXPECT_NE(projection_refusal(options("EPSG:27572", "EPSG:4807")).find("not in degrees"), std::string::npos);
   ProjectionOptions contradicting = options("EPSG:25832+5773");
   contradicting.orthometric = false;
-  EXPECT_NE(refusal(contradicting).find("heights are not ellipsoidal"), std::string::npos);
+  EXPECT_NE(projection_refusal(contradicting).find("heights are not ellipsoidal"), std::string::npos);
 }
 
 // A national geoid whose grid comes with no package of Debian.
 TEST(Projection, AMissingGeoidIsNamed) {
-  const std::string told = refusal(options("EPSG:2056+5728"));
+  const std::string told = projection_refusal(options("EPSG:2056+5728"));
   if (told.empty()) GTEST_SKIP() << "the Swiss grids are installed";
   EXPECT_NE(told.find("not installed"), std::string::npos) << told;
   EXPECT_NE(told.find(".tif"), std::string::npos) << told;
