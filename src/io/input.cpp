@@ -41,13 +41,13 @@ void check_is_readable_file(const fs::path& path) {
   if (fs::is_regular_file(status) && fs::file_size(path, error) == 0) refuse(path.string(), "the file is empty", "", "");
 }
 
-struct Content {
-  std::uint64_t size = 0;  ///< 0 where it is not known
+struct StoredSize {
+  std::uint64_t size = 0;  ///< of the content, 0 where it is not known
   bool compressed = false;
 };
 
 /// A gzip member ends with its uncompressed length modulo 2^32, little endian (RFC 1952, 2.3.1).
-Content content_of(const fs::path& path) {
+StoredSize stored_size_of(const fs::path& path) {
   const std::unique_ptr<std::FILE, int (*)(std::FILE*)> file(std::fopen(path.c_str(), "rb"), &std::fclose);
   if (!file) return {};
   std::error_code error;
@@ -63,9 +63,9 @@ Content content_of(const fs::path& path) {
 }
 
 /// One byte more than a plain file has, so that its end is seen in the first reading.
-std::size_t block_for(const Content& content) {
-  if (content.compressed || content.size == 0) return kBlock;
-  return static_cast<std::size_t>(std::clamp<std::uint64_t>(content.size + 1, kLeastBlock, kBlock));
+std::size_t block_for(const StoredSize& stored) {
+  if (stored.compressed || stored.size == 0) return kBlock;
+  return static_cast<std::size_t>(std::clamp<std::uint64_t>(stored.size + 1, kLeastBlock, kBlock));
 }
 
 }  // namespace
@@ -84,9 +84,9 @@ ByteSource::ByteSource(const fs::path& stated) : handle_(std::make_unique<Handle
   check_is_readable_file(path);
   handle_->file = gzopen(path.c_str(), "rb");
   if (handle_->file == nullptr) refuse(name_, fmt::format("cannot be opened: {}", std::strerror(errno)), "", "");
-  const Content content = content_of(path);
-  expected_size_ = content.size;
-  block_ = block_for(content);
+  const StoredSize size = stored_size_of(path);
+  expected_size_ = size.size;
+  block_ = block_for(size);
   gzbuffer(handle_->file, static_cast<unsigned>(block_));
   note_read(path);
 }

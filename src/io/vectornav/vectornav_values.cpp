@@ -44,7 +44,7 @@ std::optional<Eigen::Vector3d> vectornav_position(const VectorNavMessage& messag
 std::optional<Eigen::Vector3d> vectornav_position(const VectorNavMessage& message) {
   using enum VectorNavGroup;
   for (const VectorNavGroup group : {kGnss1, kGnss2})
-    if (const auto r = vectornav_position(message, group)) return r;
+    if (auto r = vectornav_position(message, group)) return r;
   return position_of(message.field(kIns, 1), message.field(kIns, 2));
 }
 
