@@ -20,14 +20,10 @@ Eigen::Matrix<double, kNav, 1> error_between(const record::NavState& estimate, c
   return d;
 }
 
-void tie_position_to_fixes(const StateLayout& layout, const record::NavState& nav, Eigen::MatrixXd& P) {
-  const auto subtract = [&P](int state, const Eigen::MatrixXd& A) {  // dr <- dr - A d(state)
-    P.middleRows<3>(kPos) -= (A * P.middleRows(state, A.cols())).eval();
-    P.middleCols<3>(kPos) -= (P.middleCols(state, A.cols()) * A.transpose()).eval();
-  };
-  if (layout.lever_arm()) subtract(*layout.lever_arm(), nav.q_b_e.toRotationMatrix());
-  if (layout.time_offset()) subtract(*layout.time_offset(), -nav.v_eb_e);
-  if (layout.base_offset()) subtract(*layout.base_offset(), Eigen::Matrix3d::Identity());
+void tie_position_to_fixes(const StateLayout& layout, Eigen::MatrixXd& P) {
+  if (!layout.base_offset()) return;
+  P.middleRows<3>(kPos) -= P.middleRows<3>(*layout.base_offset()).eval();
+  P.middleCols<3>(kPos) -= P.middleCols<3>(*layout.base_offset()).eval();
 }
 
 record::NavCovariance nav_covariance_n(const Eigen::Ref<const Eigen::Matrix<double, kNav, kNav>>& P,

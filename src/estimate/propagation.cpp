@@ -131,7 +131,7 @@ void Propagation::restart(const Restart& at, Eigen::MatrixXd& P) {
     anew(kVel, at.sd_velocity_n);
     nav.r_eb_e = at.nav.r_eb_e;
     nav.v_eb_e = at.nav.v_eb_e;
-    tie_position_to_fixes(layout_, nav, P);
+    tie_position_to_fixes(layout_, P);
   }
   navigator_.correct(nav, navigator_.x());
 }

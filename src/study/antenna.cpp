@@ -40,10 +40,6 @@ estimate::FilterState PreparedMission::antenna_as_stated(estimate::FilterState s
                                                          const estimate::StateLayout& layout) const {
   if (layout.time_offset()) state.x(*layout.time_offset()) = setup_.time_offset_s - mission_->time_offset_s;
   if (layout.lever_arm()) state.x.segment<3>(*layout.lever_arm()) = setup_.lever_arm_b - mission_->lever_arm_b;
-  if (setup_.start) return state;
-  // A start from fixes keeps the antenna where they are.
-  if (layout.time_offset()) state.nav.r_eb_e += state.x(*layout.time_offset()) * state.nav.v_eb_e;
-  if (layout.lever_arm()) state.nav.r_eb_e -= state.nav.q_b_e * state.x.segment<3>(*layout.lever_arm());
   return state;
 }
 
@@ -153,11 +149,10 @@ void PreparedMission::take_antenna(AntennaChoice shown, const AntennaFit& found)
 }
 
 // The effect of the offset is velocity times time, valid for milliseconds, and other comparisons with fixes need correct
-// values: time offset and lever arm are corrected by the estimates until these vanish. Begun 0.4 s from the offset, five steps
-// left 40 ms and 50 mm of run l of rc-rover-mimu. If the steps grow there is no convergence: the values to be estimated then
-// remain as stated.
+// values: time offset and lever arm are corrected by the estimates until these vanish. If the steps grow there is no
+// convergence: the values to be estimated then remain as stated.
 void PreparedMission::refine_antenna(const Progress& progress) {
-  constexpr int kRounds = 25;
+  constexpr int kRounds = 5;
   constexpr double kSettledTime = 5e-4;  // s
   constexpr double kSettledArm = 1e-3;   // m
   constexpr double kSmall = 0.1;         // of a wide prior: below it noise makes steps grow

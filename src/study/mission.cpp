@@ -219,7 +219,7 @@ void PreparedMission::align(const Progress& progress) {
 estimate::FilterState PreparedMission::start_state(const estimate::ForwardFilter& filter) const {
   estimate::FilterState state =
       filter.initial_state(start_.nav, start_.sd_position_n, start_.sd_velocity_n, start_.sd_attitude_n);
-  if (!setup_.start) estimate::tie_position_to_fixes(filter.layout(), state.nav, state.P);
+  if (!setup_.start) estimate::tie_position_to_fixes(filter.layout(), state.P);
   // Sensor states come first in every layout of one model; auxiliary states start at zero.
   const Eigen::Index sensors = filter.layout().sensor_end();
   if (start_sensor_errors_.size() == sensors)
@@ -331,7 +331,7 @@ estimate::FilterState PreparedMission::far_end(const estimate::FilterState& last
   const estimate::ForwardFilter filter(*mission_, setup_.model, setup_.filter);
   estimate::FilterState state =
       filter.initial_state(last.nav, start_.sd_position_n, start_.sd_velocity_n, start_.sd_attitude_n);
-  if (!setup_.start) estimate::tie_position_to_fixes(filter.layout(), state.nav, state.P);
+  if (!setup_.start) estimate::tie_position_to_fixes(filter.layout(), state.P);
   state.x = last.x;
   return state;
 }

@@ -7,7 +7,6 @@
 #include <iterator>
 #include <stdexcept>
 
-#include "coast/estimate/constant_scores.hpp"
 #include "stage.hpp"
 
 namespace coast::study {
@@ -140,32 +139,6 @@ estimate::FilterState carried_start(PreparedMission& mission, const estimate::Fi
   return state;
 }
 
-namespace {
-
-// A pass with the antenna known: the start has no covariance of it.
-AntennaScatter antenna_scatter(const PreparedMission& mission, const estimate::FilterOptions& options) {
-  const estimate::ForwardFilter filter(mission.mission(), mission.model(), options);
-  const estimate::StateLayout& layout = filter.layout();
-  const int arm = *layout.lever_arm();
-  std::vector<int> states{arm, arm + 1, arm + 2};
-  if (layout.time_offset()) states.push_back(*layout.time_offset());
-  estimate::FilterState start = mission.start_state(filter);
-  Eigen::VectorXd prior(static_cast<Eigen::Index>(states.size()));
-  for (std::size_t i = 0; i < states.size(); ++i) {
-    prior(static_cast<Eigen::Index>(i)) = 1.0 / start.P(states[i], states[i]);
-    start.P.row(states[i]).setZero();
-    start.P.col(states[i]).setZero();
-  }
-  estimate::KnotStore knots;
-  estimate::FilterOutputs outputs;
-  outputs.knots = &knots;
-  static_cast<void>(filter.run(start, outputs));
-  const Eigen::VectorXd factor = estimate::block_scatter(estimate::constant_scores(layout, knots, states), prior).factor;
-  return {factor.head<3>(), layout.time_offset() ? factor(3) : 1.0};
-}
-
-}  // namespace
-
 LeverArmCheck check_lever_arm(const PreparedMission& mission, double prior_sd_m, const Progress& progress) {
   estimate::FilterOptions options = mission.options();
   options.auxiliary.lever_arm_sd_m = prior_sd_m;
@@ -175,11 +148,7 @@ LeverArmCheck check_lever_arm(const PreparedMission& mission, double prior_sd_m,
   const estimate::FilterState last = filter.run(mission.start_state(filter), outputs).last;
   const Eigen::Index at = *filter.layout().lever_arm();
   const Eigen::Vector3d moved = mission.mission().lever_arm_b - mission.setup().lever_arm_b;  // by the estimate so far
-  LeverArmCheck check{moved + last.x.segment<3>(at), last.P.diagonal().segment<3>(at).cwiseSqrt()};
-  if (filter.layout().carrier_slots() < filter.layout().size()) return check;
-  check.scatter = antenna_scatter(mission, options);
-  check.sd_m = check.sd_m.cwiseProduct(check.scatter.lever_arm);
-  return check;
+  return {moved + last.x.segment<3>(at), last.P.diagonal().segment<3>(at).cwiseSqrt()};
 }
 
 }  // namespace coast::study

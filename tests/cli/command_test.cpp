@@ -408,7 +408,9 @@ TEST(Commands, InspectSaysWhatIsInAFile) {
   const std::string imu = (recording() / "imu.csv").string();
   EXPECT_EQ(run(fmt::format("inspect '{}' --gps-week 2374", imu), folder.path()).status, 0);
   EXPECT_NE(text_of(folder.path() / "stdout.txt").find("IMU: "), std::string::npos);
-  const Outcome neither = run(fmt::format("inspect '{}'", (recording() / "run.yaml").string()), folder.path());
+  EXPECT_EQ(run(fmt::format("inspect '{}'", (recording() / "run.yaml").string()), folder.path()).status, 0);
+  EXPECT_NE(text_of(folder.path() / "stdout.txt").find("as `coast process` reads them"), std::string::npos);
+  const Outcome neither = run(fmt::format("inspect '{}'", (recording() / "report.json").string()), folder.path());
   EXPECT_EQ(neither.status, 2) << neither.error;
 }
 

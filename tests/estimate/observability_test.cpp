@@ -128,7 +128,7 @@ TEST(BatchObservability, BaseOffsetIsSeenFromAKnownStartAlone) {
     mission.begin(4, {});
     if (start_from_fixes) {
       mission.start.nav.r_eb_e += offset_e;
-      tie_position_to_fixes(mission.filter->layout(), mission.start.nav, mission.start.P);
+      tie_position_to_fixes(mission.filter->layout(), mission.start.P);
     }
     mission.run();
     const BatchSolution solution = mission.batch();
@@ -158,7 +158,7 @@ TEST(BatchObservability, BaseOffsetLeavesTheConditionAsItIs) {
     FilterOptions options;
     options.auxiliary.base_offset_sd_m = with_offset ? 1.0 : 0.0;
     test::Filtered mission(test::kIndustrialModel, drive_with_antenna(60.0), options, 4, {});
-    tie_position_to_fixes(mission.filter->layout(), mission.start.nav, mission.start.P);
+    tie_position_to_fixes(mission.filter->layout(), mission.start.P);
     mission.run();
     condition[with_offset ? 1 : 0] = mission.batch().report.condition;
   }

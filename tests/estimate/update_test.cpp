@@ -197,27 +197,5 @@ TEST(FilterState, CovarianceIsTurnedIntoNorthEastDown) {
   EXPECT_NEAR(cov.attitude.trace(), P.diagonal().tail<3>().sum(), 1e-12);
 }
 
-// What a fix at the start would tell is the noise of the position alone: neither lever arm nor time offset nor base.
-TEST(StartFromFixes, KnowsNothingOfTheAntenna) {
-  AuxiliaryStates auxiliaries = kAllAuxiliaries;
-  auxiliaries.correlated_gnss = {};
-  const StateLayout layout(test::error_model(test::kFullModel), Eigen::Matrix3d::Identity(), auxiliaries);
-  FilterState state;
-  state.nav = test::weaving(60.0).nav_state(test::mission_start(), 5.0);
-  state.x = Eigen::VectorXd::Zero(layout.size());
-  state.P = layout.initial_covariance();
-  const Eigen::Matrix3d noise = Eigen::Vector3d(1e-4, 2e-4, 4e-4).asDiagonal();
-  state.P.block<3, 3>(kPos, kPos) = noise;
-  tie_position_to_fixes(layout, state.nav, state.P);
-  record::GnssFix fix;
-  fix.r_ea_e = state.nav.r_eb_e;
-  fix.position_cov_n = noise;
-  const UpdateContext context{layout, {0.4, -0.6, -1.3}, Eigen::Vector3d::Zero(), Eigen::Matrix3d::Identity()};
-  Eigen::MatrixXd H = gnss_position(state, context, fix).H;
-  H.block<3, 3>(0, kPsi).setZero();  // attitudes have an uncertainty of their own, which the alignment adds
-  test::expect_near_matrix(H * state.P * H.transpose(), noise, 1e-12, "predicted position of the antenna");
-  EXPECT_GT(state.P(kPos, kPos), 0.05 * 0.05);
-}
-
 }  // namespace
 }  // namespace coast

@@ -1,7 +1,6 @@
 #pragma once
 // The solution of a prepared mission: forward, smoothed, combined, in several passes.
 
-#include <algorithm>
 #include <functional>
 #include <memory>
 #include <optional>
@@ -55,19 +54,10 @@ struct SolutionOutputs {
 [[nodiscard]] estimate::FilterState carried_start(PreparedMission& mission, const estimate::FilterOptions& options, int passes,
                                                   const Progress& progress);
 
-/// How much more parts of the mission differ in what they say of the antenna than the filter's standard deviations admit
-/// (estimate::block_scatter): factors on these, >= 1.
-struct AntennaScatter {
-  Eigen::Vector3d lever_arm = Eigen::Vector3d::Ones();
-  double time_offset = 1.0;  ///< 1 if it is not estimated
-  [[nodiscard]] double largest() const { return std::max(lever_arm.maxCoeff(), time_offset); }
-};
-
 /// Lever arm estimated from the data, with the configured one as prior mean.
 struct LeverArmCheck {
   Eigen::Vector3d difference_m;  ///< estimated minus configured, body axes
-  Eigen::Vector3d sd_m;          ///< with the scatter
-  AntennaScatter scatter = {};
+  Eigen::Vector3d sd_m;
 };
 [[nodiscard]] LeverArmCheck check_lever_arm(const PreparedMission& mission, double prior_sd_m, const Progress& progress);
 

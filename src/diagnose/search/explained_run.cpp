@@ -111,17 +111,6 @@ const SizeEvidence& ExplainedRun::sizes() const {
   return sizes_.value([this] { return sizes_where({}); });
 }
 
-Eigen::VectorXd ExplainedRun::scatter() const {
-  if (explanation_.effects.empty()) return {};
-  const SelectedAlone selected(run_.hypotheses(), explanation_.effects);
-  const std::vector<Eigen::Index> rows = selected.rows();
-  std::vector<estimate::ConstantScore> scores =
-      estimate::effect_scores(run_.mission(), run_.layout(), run_.solution().knots, selected.effects());
-  for (estimate::ConstantScore& one : scores)
-    one = {one.t, Eigen::VectorXd(one.score(rows)), Eigen::MatrixXd(one.information(rows, rows))};
-  return estimate::block_scatter(scores, Eigen::VectorXd::Zero(static_cast<Eigen::Index>(rows.size()))).factor;
-}
-
 SizeEvidence ExplainedRun::sizes_where(const std::function<bool(geo::GpsTime)>& counts) const {
   if (explanation_.effects.empty()) return {};
   std::vector<SelectedEffect> selected = explanation_.effects;

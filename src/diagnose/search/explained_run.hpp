@@ -73,9 +73,6 @@ class ExplainedRun {
   [[nodiscard]] Examination examined(ExaminationOptions options) const;
   /// Of the sizes of its own effects. Likewise.
   [[nodiscard]] const SizeEvidence& sizes() const;
-  /// Factors on the standard deviations of the sizes of its own effects: how much more parts of the mission differ than these
-  /// admit (estimate::block_scatter).
-  [[nodiscard]] Eigen::VectorXd scatter() const;
   /// Sizes from some of the innovations.
   [[nodiscard]] SizeEvidence sizes_where(const std::function<bool(geo::GpsTime)>& counts) const;
 

@@ -17,8 +17,6 @@ namespace {
 Account worded(const State& state) {
   Account account = state.account;
   for (std::size_t i = 0; i < account.findings.size(); ++i) account.findings[i].value = state.explanation.effects[i].value;
-  const Eigen::VectorXd scatter = state.run->scatter();
-  for (std::size_t i = 0; i < account.findings.size(); ++i) account.findings[i].sd *= scatter(static_cast<Eigen::Index>(i));
   name_relations(state, account.findings);
   fold_residues(account);
   return account;

@@ -152,23 +152,6 @@ void note_last_state(const Work& work, const Delivery& delivery, ProcessResult& 
   result.lever_arm_sd_m = last.P.diagonal().segment<3>(*layout.lever_arm()).cwiseSqrt();
 }
 
-void widen_antenna_sigmas(ProcessResult& result) {
-  if (!result.lever_arm) return;
-  const study::AntennaScatter& scatter = result.lever_arm->scatter;
-  if (result.time_offset_sd_s) *result.time_offset_sd_s *= scatter.time_offset;
-  if (result.lever_arm_sd_m) *result.lever_arm_sd_m = result.lever_arm_sd_m->cwiseProduct(scatter.lever_arm);
-  if (!(scatter.largest() > 1.0)) return;
-  const std::string of_time = scatter.time_offset > 1.0 ? fmt::format(", time offset {:.2g}", scatter.time_offset) : "";
-  result.events.push_back(
-      {record::Event::Severity::kInfo, "antenna_scatter",
-       fmt::format(
-           "Parts of the recording differ in what they say of the antenna more than the filter's sigmas admit: errors "
-           "last that its model takes for white. Stated sigmas are larger by it: lever arm forward {:.2g}, right {:.2g}, "
-           "down {:.2g}{} times.",
-           scatter.lever_arm.x(), scatter.lever_arm.y(), scatter.lever_arm.z(), of_time),
-       std::nullopt, 1});
-}
-
 void note_estimates(const Work& work, const ProcessResult& result) {
   if (work.mission.options().auxiliary.time_offset_sd_s > 0.0 ||
       work.mission.mission().time_offset_s != work.config.setup.time_offset_s)

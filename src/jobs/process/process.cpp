@@ -115,7 +115,6 @@ ProcessResult process(const RunConfig& config, Recordings recordings, const Traj
   result.separations = separate_forward_and_backward(work, delivery, passes.carried.has_value());
   judge_result(work, delivery, excerpt, setup, result);
   note_last_state(work, delivery, result);
-  widen_antenna_sigmas(result);
   note_estimates(work, result);
   result.resolved = config.root.resolved_yaml();
   result.used = mission->setup();

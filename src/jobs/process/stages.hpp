@@ -78,8 +78,6 @@ void study_sweep(const Work& work, const Delivery& delivery, const EarlierPasses
 [[nodiscard]] std::vector<Separation> separate_forward_and_backward(const Work& work, const Delivery& delivery, bool carried);
 /// Biases and lever arm in the last state of the filter.
 void note_last_state(const Work& work, const Delivery& delivery, ProcessResult& result);
-/// Stated sigmas of lever arm and time offset: with the scatter between parts of the mission.
-void widen_antenna_sigmas(ProcessResult& result);
 /// Adds the estimates to the resolved file as comments, ready to be used in another run.
 void note_estimates(const Work& work, const ProcessResult& result);
 

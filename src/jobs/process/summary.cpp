@@ -221,8 +221,7 @@ std::string summary_json(const ProcessResult& result) {
   if (result.batch) j["batch"] = batch_json(*result.batch);
   if (result.lever_arm)
     j["lever_arm_misclosure"] = {{"estimated_minus_configured_m", array_json(result.lever_arm->difference_m)},
-                                 {"sd_m", array_json(result.lever_arm->sd_m)},
-                                 {"sd_factor", array_json(result.lever_arm->scatter.lever_arm)}};
+                                 {"sd_m", array_json(result.lever_arm->sd_m)}};
   if (result.marked) j["time_marks"] = time_marks_json(*result.marked);
   if (result.projection) j["projection"] = projection_json(*result.projection, *result.projected_start);
   if (!result.separations.empty()) j["forward_backward_separation"] = separation_json(result.separations);

@@ -201,7 +201,7 @@ report::Table model_table(const noise::ImuErrorModel& model) {
 }
 
 report::Table lever_arm_table(const ProcessPage& page) {
-  const Eigen::Vector3d &difference = page.result.lever_arm->difference_m, &sd = page.result.lever_arm->sd_m;
+  const auto& [difference, sd] = *page.result.lever_arm;
   const Eigen::Vector3d& configured = page.result.used.lever_arm_b;
   report::Table table;
   table.id = "lever-arm";

@@ -90,7 +90,7 @@ Verdict arm_verdict(const ProcessPage& page, double difference, double sd) {
 std::optional<Tile> lever_arm_tile(const ProcessPage& page) {
   if (!page.result.lever_arm) return std::nullopt;
   constexpr double kObservable = 0.10;  // m, one sigma
-  const Eigen::Vector3d &difference = page.result.lever_arm->difference_m, &sd = page.result.lever_arm->sd_m;
+  const auto& [difference, sd] = *page.result.lever_arm;
   const bool metres = difference.cwiseAbs().maxCoeff() >= 1.0;  // m; with such a difference another point was measured
   const double unit = metres ? 1.0 : kCm;
   Tile tile{"Lever-arm misclosure", "", metres ? "m" : "cm", Verdict::kNone, "", {}, "sensors"};
