@@ -410,7 +410,8 @@ TEST(Commands, InspectSaysWhatIsInAFile) {
   EXPECT_NE(text_of(folder.path() / "stdout.txt").find("IMU: "), std::string::npos);
   EXPECT_EQ(run(fmt::format("inspect '{}'", (recording() / "run.yaml").string()), folder.path()).status, 0);
   EXPECT_NE(text_of(folder.path() / "stdout.txt").find("as `coast process` reads them"), std::string::npos);
-  const Outcome neither = run(fmt::format("inspect '{}'", (recording() / "report.json").string()), folder.path());
+  write(folder.path() / "notes.txt", "Dear reader\n");
+  const Outcome neither = run(fmt::format("inspect '{}'", (folder.path() / "notes.txt").string()), folder.path());
   EXPECT_EQ(neither.status, 2) << neither.error;
 }
 
