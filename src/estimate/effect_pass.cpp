@@ -7,7 +7,6 @@
 #include "backward_recursion.hpp"
 #include "coast/geo/earth.hpp"
 #include "coast/parallel.hpp"
-#include "constant_recursion.hpp"
 #include "propagation.hpp"
 
 namespace coast::estimate {
@@ -291,19 +290,6 @@ void effect_pass(const Mission& mission, const StateLayout& layout, const KnotSt
                                             tbb::filter_mode::parallel, prepare) &
                                         tbb::make_filter<std::pair<std::size_t, std::vector<PreparedKnot>>, void>(
                                             tbb::filter_mode::serial_in_order, recur));
-}
-
-std::vector<ConstantScore> effect_scores(const Mission& mission, const StateLayout& layout, const KnotStore& knots,
-                                         const Effects& effects) {
-  Preparation preparation(mission, layout, knots, effects);
-  ConstantRecursion recursion(layout, Eigen::MatrixXd::Zero(layout.size(), effects.size()));
-  std::vector<ConstantScore> scores;
-  for (std::size_t k = 0; k < knots.size(); ++k) {
-    const PreparedKnot one = preparation.of(k);
-    if (!one.D.empty()) scores.push_back(recursion.through_updates(one.knot, one.D));
-    if (one.W.cols() > 0) recursion.through_transition(one.knot, one.W);
-  }
-  return scores;
 }
 
 }  // namespace coast::estimate

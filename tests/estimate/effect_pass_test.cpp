@@ -194,27 +194,6 @@ TEST_F(EffectPassTest, EstimateOfAnInjectedEffectIsWithinItsSigma) {
   EXPECT_NEAR((after - before) / bias, 1.0, 0.01);  // thirty sigmas: the same noise, and what is not linear
 }
 
-// Rounding: the same sums, forward and backward.
-TEST_F(EffectPassTest, ScoresKnotByKnotHaveTheSameSums) {
-  const geo::GpsTime start = test::mission_start();
-  const AtKnot at = evidence(start);
-  KnotStore knots;
-  Eigen::VectorXd score = Eigen::VectorXd::Zero(kCoefficients);
-  Eigen::MatrixXd information = Eigen::MatrixXd::Zero(kCoefficients, kCoefficients);
-  log_likelihood(Eigen::Vector<double, kCoefficients>::Zero(), start, &knots,
-                 [&](const ForwardFilter& filter, const Mission& mission) {
-                   for (const ConstantScore& one : effect_scores(mission, filter.layout(), knots, FourEffects(recording_))) {
-                     score += one.score;
-                     information += one.information;
-                   }
-                 });
-  for (int i = 0; i < kCoefficients; ++i) {
-    EXPECT_NEAR(score(i), at.r(i), 1e-6 * std::sqrt(at.N(i, i))) << i;
-    for (int j = 0; j <= i; ++j)
-      EXPECT_NEAR(information(i, j), at.N(i, j), 1e-6 * std::sqrt(at.N(i, i) * at.N(j, j))) << i << ' ' << j;
-  }
-}
-
 /// A bias of a gyro in one sample.
 class OneSample : public Effects {
  public:

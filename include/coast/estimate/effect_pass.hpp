@@ -4,9 +4,7 @@
 
 #include <Eigen/Core>
 #include <functional>
-#include <vector>
 
-#include "coast/estimate/constant_scores.hpp"
 #include "coast/estimate/forward_filter.hpp"
 #include "coast/estimate/knot.hpp"
 
@@ -92,11 +90,5 @@ struct EffectPassOptions {
 /// @param knots  of a forward pass of the same mission and layout, without carrier slots
 void effect_pass(const Mission& mission, const StateLayout& layout, const KnotStore& knots, const Effects& effects,
                  const EffectPassOptions& options, const std::function<void(const Evidence&)>& visit);
-
-/// Scores and information of the coefficients knot by knot, in order of time: their sums are r_effects and N_effects of the
-/// first knot, but for the part that is a sensor's own noise. By the forward recursion of constant_scores().
-/// @param knots  as above
-[[nodiscard]] std::vector<ConstantScore> effect_scores(const Mission& mission, const StateLayout& layout,
-                                                       const KnotStore& knots, const Effects& effects);
 
 }  // namespace coast::estimate
