@@ -29,4 +29,19 @@ struct CountedWords {
 /// "FILE: 3 epochs without a signal left out; first at .."; nothing if none was counted.
 void add_counted(record::Events& events, const std::string& file, const Counted& counted, const CountedWords& words);
 
+/// The same for a reader that has counted several kinds.
+class CountedEvents {
+ public:
+  CountedEvents(record::Events& events, const std::string& file) : events_(events), file_(file) {}
+
+  void operator()(const Counted& counted, const char* kind, const char* one, const char* many, const char* what,
+                  record::Event::Severity severity = record::Event::Severity::kWarning) const {
+    add_counted(events_, file_, counted, {kind, one, many, what, severity});
+  }
+
+ private:
+  record::Events& events_;
+  const std::string& file_;
+};
+
 }  // namespace coast::io

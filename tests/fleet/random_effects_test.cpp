@@ -142,9 +142,9 @@ TEST(Student, TellsTheTailsOfASample) {
 }
 
 TEST(Student, WhatIsLargerCountsAsSuch) {
-  // R: v <- 1.5*qt((1:40-0.5)/40, 4); o <- v[order(abs(v))][1:39]; optimize(function(ls) sum(dt(o/exp(ls), 1/inv, log=TRUE)) -
-  // 39*ls +
-  //    log(2*pt(-max(abs(o))/exp(ls), 1/inv)), c(-3,3), maximum=TRUE) for inv in 0.4*(0:40)/40
+  // R: v <- 1.5*qt((1:40-0.5)/40, 4); o <- v[order(abs(v))][1:39]
+  //    f <- function(ls) sum(dt(o/exp(ls), 1/inv, log=TRUE)) - 39*ls + log(2*pt(-max(abs(o))/exp(ls), 1/inv))
+  //    optimize(f, c(-3,3), maximum=TRUE) for inv in 0.4*(0:40)/40
   std::vector<double> values;
   for (int i = 0; i < 20; ++i) {
     const double v = 1.5 * student_two_sided_quantile((2.0 * i + 1.0) / 40.0, 4.0);

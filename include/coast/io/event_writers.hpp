@@ -15,9 +15,8 @@ void write_events_csv(const std::filesystem::path& path, const std::vector<recor
 
 /// CSV with header: id, time, geodetic position, omega, phi, kappa with respect to east-north-up at the event
 /// (geo/photogrammetry.hpp), and their standard deviations: N, E, D in m, angles in deg.
-/// @param projection  if given, positions are easting, northing, height, and the angles relate to the axes of the grid: east
-/// and
-///                    north turned by the convergence
+/// @param projection  if given, positions are easting, northing, height, and the angles relate to the axes of the grid, which
+///                    are turned by the convergence
 void write_events_opk(const std::filesystem::path& path, const std::vector<record::MarkedState>& states,
                       const Projection* projection = nullptr);
 

@@ -28,9 +28,8 @@ struct ConvertConfig {
 [[nodiscard]] ConvertConfig read_convert(const std::filesystem::path& input, const std::filesystem::path& output,
                                          const std::string& format);
 
-/// @throws InputError  the file cannot be read, or has nothing that the format can hold; a format of a map without projection,
-/// or
-///                     none that leads from the place of the file
+/// @throws InputError  the file cannot be read, or has nothing that the format can hold; a format of a map has no projection,
+///                     or no transformation leads to it from the place of the file
 [[nodiscard]] io::FileContents convert(const ConvertConfig& config, const Progress& progress);
 
 /// All files that the format can consist of.

@@ -298,10 +298,7 @@ void ObservationReader::keep_epoch() {
 
 void ObservationReader::report() {
   recording_.events = lines_.events();
-  const auto add = [&](const Counted& counted, const char* kind, const char* one, const char* many, const char* what,
-                       record::Event::Severity severity = record::Event::Severity::kWarning) {
-    add_counted(recording_.events, recording_.source, counted, {kind, one, many, what, severity});
-  };
+  const CountedEvents add(recording_.events, recording_.source);
   add(spoiled_, "rinex_spoiled", "number or record", "numbers or records", "that cannot be read left out");
   add(impossible_, "rinex_impossible", "number", "numbers", "that no receiver measures left out");
   add(unknown_satellites_, "rinex_unknown_satellite", "record", "records", "of no known satellite left out");

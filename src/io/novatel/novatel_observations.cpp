@@ -131,10 +131,7 @@ void NovAtelObservationReader::refuse() const {
 void NovAtelObservationReader::report() {
   using Grade = record::Event::Severity;
   recording_.events = stream_.events();
-  const auto add = [&](const Counted& counted, const char* kind, const char* one, const char* many, const char* what,
-                       Grade severity) {
-    add_counted(recording_.events, recording_.source, counted, {kind, one, many, what, severity});
-  };
+  const CountedEvents add(recording_.events, recording_.source);
   add(spoiled_, "range_spoiled", "epoch", "epochs", "whose body contradicts its length left out", Grade::kWarning);
   add(no_time_, "range_no_time", "epoch", "epochs", "before the receiver knew GPS time finely left out", Grade::kInfo);
   add(empty_, "range_empty", "epoch", "epochs", "without a signal left out", Grade::kInfo);

@@ -180,10 +180,7 @@ void RtcmObservationReader::refuse() const {
 void RtcmObservationReader::report() {
   using Grade = record::Event::Severity;
   recording_.events = rtcm_file_events(stream_.census(), recording_.source);
-  const auto add = [&](const Counted& counted, const char* kind, const char* one, const char* many, const char* what,
-                       Grade severity) {
-    add_counted(recording_.events, recording_.source, counted, {kind, one, many, what, severity});
-  };
+  const CountedEvents add(recording_.events, recording_.source);
   if (!survey_.week_is_of_file)
     recording_.events.push_back({Grade::kInfo, "rtcm_week_not_stated",
                                  fmt::format("{}: nothing in it states the week: {} is taken for the first epoch",

@@ -139,10 +139,7 @@ void SbfObservationReader::refuse() const {
 void SbfObservationReader::report() {
   using Grade = record::Event::Severity;
   recording_.events = sbf_file_events(stream_.census(), recording_.source);
-  const auto add = [&](const Counted& counted, const char* kind, const char* one, const char* many, const char* what,
-                       Grade severity) {
-    add_counted(recording_.events, recording_.source, counted, {kind, one, many, what, severity});
-  };
+  const CountedEvents add(recording_.events, recording_.source);
   add(spoiled_, "sbf_spoiled", "epoch", "epochs", "whose length contradicts the number of signals left out", Grade::kWarning);
   add(no_time_, "sbf_no_time", "epoch", "epochs", "before the receiver knew the time left out", Grade::kInfo);
   add(scrambled_, "sbf_scrambled", "epoch", "epochs", "with scrambled measurements left out", Grade::kWarning);

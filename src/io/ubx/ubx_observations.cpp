@@ -168,10 +168,7 @@ void RawxReader::refuse() const {
 void RawxReader::report() {
   using Grade = record::Event::Severity;
   recording_.events = ubx_file_events(stream_.census(), recording_.source);
-  const auto add = [&](const Counted& counted, const char* kind, const char* one, const char* many, const char* what,
-                       Grade severity) {
-    add_counted(recording_.events, recording_.source, counted, {kind, one, many, what, severity});
-  };
+  const CountedEvents add(recording_.events, recording_.source);
   add(spoiled_, "rawx_spoiled", "epoch", "epochs", "whose length contradicts the number of signals left out", Grade::kWarning);
   add(no_time_, "rawx_no_time", "epoch", "epochs", "before the receiver knew the week left out", Grade::kInfo);
   add(unknown_, "rawx_unknown_signal", "measurement", "measurements", "of an unknown satellite or signal left out",

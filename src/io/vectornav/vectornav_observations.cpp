@@ -85,10 +85,7 @@ void VectorNavRawReader::take_measurement(const VectorNavRaw::Measurement& m, ge
 void VectorNavRawReader::report() {
   using Grade = record::Event::Severity;
   recording_.events = vectornav_file_events(stream_.census(), recording_.source);
-  const auto add = [&](const Counted& counted, const char* kind, const char* one, const char* many, const char* what,
-                       Grade severity) {
-    add_counted(recording_.events, recording_.source, counted, {kind, one, many, what, severity});
-  };
+  const CountedEvents add(recording_.events, recording_.source);
   add(no_time_, "vectornav_no_time", "epoch", "epochs", "before the receiver knew the time left out", Grade::kInfo);
   add(unknown_, "vectornav_unknown_signal", "measurement", "measurements", "of an unknown satellite or signal left out",
       Grade::kInfo);

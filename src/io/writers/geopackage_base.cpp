@@ -214,7 +214,7 @@ void GeoPackage::close() {
 
 GeoPackage GeoPackage::opened(const std::filesystem::path& path, const Projection* projection) {
   GeoPackage package(path, projection);
-  std::ifstream in(path, std::ios::binary);
+  std::ifstream in(path, std::ios::binary);  // not as an input, which results may not replace
   std::stringstream content;
   content << in.rdbuf();
   const std::string bytes = content.str();
